@@ -1,0 +1,2 @@
+//! The program `ldwrap-cli`.
+fn main() {}

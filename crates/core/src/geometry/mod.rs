@@ -1,0 +1,4 @@
+//! Pure mathematics in double precision: knows no mesh and no ids.
+
+pub mod plane;
+pub mod triangle;

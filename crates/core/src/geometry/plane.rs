@@ -1,0 +1,60 @@
+//! The plane: orientation with exact sign, the half-open rule, distances.
+
+use glam::DVec2;
+use robust::{Coord, orient2d};
+
+fn coord(p: DVec2) -> Coord<f64> {
+    Coord { x: p.x, y: p.y }
+}
+
+/// Positive when `c` lies to the left of the line from `a` to `b`, negative to the right, zero exactly on it.
+/// The sign is exact (Shewchuk, DOI 10.1007/PL00009321).
+#[inline]
+pub fn orientation(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    orient2d(coord(a), coord(b), coord(c))
+}
+
+/// Whether `p` lies to the left of the directed line `a b`, where a point exactly on the line counts as shifted
+/// by an infinitesimal (e, e^2). Of an edge and its reverse exactly one has any given point on its left.
+#[inline]
+pub fn is_left_half_open(a: DVec2, b: DVec2, p: DVec2) -> bool {
+    let o = orientation(a, b, p);
+    if o != 0.0 {
+        return o > 0.0;
+    }
+    if a.y != b.y { a.y > b.y } else { b.x > a.x }
+}
+
+/// Whether the counterclockwise triangle holds `p` under the half-open rule of [`is_left_half_open`]: a point on
+/// an edge or corner inside a region tiled by triangles belongs to exactly one of them.
+#[inline]
+pub fn triangle_holds(a: DVec2, b: DVec2, c: DVec2, p: DVec2) -> bool {
+    is_left_half_open(a, b, p) && is_left_half_open(b, c, p) && is_left_half_open(c, a, p)
+}
+
+/// Barycentric coordinates of `p` in the triangle, clamped to it (never negative, sum 1).
+/// A triangle without area gives its first corner.
+pub fn barycentric(a: DVec2, b: DVec2, c: DVec2, p: DVec2) -> [f64; 3] {
+    let (ab, ac, ap) = (b - a, c - a, p - a);
+    let area = ab.perp_dot(ac);
+    if area == 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let v = (ap.perp_dot(ac) / area).clamp(0.0, 1.0);
+    let w = (ab.perp_dot(ap) / area).clamp(0.0, 1.0 - v);
+    [1.0 - v - w, v, w]
+}
+
+/// How far along the segment `a b` (0 to 1) its point nearest to `p` lies.
+#[inline]
+pub fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> f64 {
+    let ab = b - a;
+    let squared = ab.length_squared();
+    if squared == 0.0 { 0.0 } else { ((p - a).dot(ab) / squared).clamp(0.0, 1.0) }
+}
+
+/// Distance from `p` to the segment `a b`.
+#[inline]
+pub fn segment_distance(a: DVec2, b: DVec2, p: DVec2) -> f64 {
+    p.distance(a + (b - a) * nearest_on_segment(a, b, p))
+}

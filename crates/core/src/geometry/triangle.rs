@@ -1,0 +1,78 @@
+//! Triangles in space: area, normal, barycentric coordinates, nearest point.
+
+use glam::DVec3;
+
+/// Twice the area of the triangle times its unit normal (counterclockwise seen from the tip of the normal).
+#[inline]
+pub fn area_vector(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
+    (b - a).cross(c - a)
+}
+
+/// The area of the triangle `a b c`.
+#[inline]
+pub fn area(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    0.5 * area_vector(a, b, c).length()
+}
+
+/// The point with barycentric coordinates `w` (sum 1).
+#[inline]
+pub fn at(a: DVec3, b: DVec3, c: DVec3, w: [f64; 3]) -> DVec3 {
+    a * w[0] + b * w[1] + c * w[2]
+}
+
+/// The corners laid congruently in the plane: `a` at the origin, `b` on the positive x-axis, `c` above it.
+/// Returns `(|ab|, x of c, y of c)`.
+#[inline]
+pub fn flatten(a: DVec3, b: DVec3, c: DVec3) -> (f64, f64, f64) {
+    let ab = b - a;
+    let ac = c - a;
+    let length = ab.length();
+    if length == 0.0 {
+        return (0.0, ac.length(), 0.0);
+    }
+    (length, ac.dot(ab) / length, ab.cross(ac).length() / length)
+}
+
+/// The barycentric coordinates of the point of the triangle nearest to `p` (Ericson, Real-Time Collision
+/// Detection, 2005, section 5.1.5); never negative, sum 1.
+pub fn nearest(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> [f64; 3] {
+    let ab = b - a;
+    let ac = c - a;
+    let ap = p - a;
+    let d1 = ab.dot(ap);
+    let d2 = ac.dot(ap);
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let bp = p - b;
+    let d3 = ab.dot(bp);
+    let d4 = ac.dot(bp);
+    if d3 >= 0.0 && d4 <= d3 {
+        return [0.0, 1.0, 0.0];
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let t = d1 / (d1 - d3);
+        return [1.0 - t, t, 0.0];
+    }
+    let cp = p - c;
+    let d5 = ab.dot(cp);
+    let d6 = ac.dot(cp);
+    if d6 >= 0.0 && d5 <= d6 {
+        return [0.0, 0.0, 1.0];
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let t = d2 / (d2 - d6);
+        return [1.0 - t, 0.0, t];
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+        let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return [0.0, 1.0 - t, t];
+    }
+    let sum = va + vb + vc;
+    let v = vb / sum;
+    let w = vc / sum;
+    [(1.0 - v - w).max(0.0), v, w]
+}

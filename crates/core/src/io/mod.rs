@@ -1,0 +1,1 @@
+//! Readers and writers: bytes in, bytes out, one file a format.

@@ -1,0 +1,1 @@
+//! Measures of any point set on a surface; they import no stage.

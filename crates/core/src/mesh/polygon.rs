@@ -1,0 +1,1 @@
+//! Triangulates polygons with more than three corners.

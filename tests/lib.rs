@@ -1,0 +1,1 @@
+//! Tests of the whole project; each file beside this one is one kind of test.
