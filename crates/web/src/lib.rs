@@ -1,0 +1,1 @@
+//! The page and the JavaScript API of ldwrap.

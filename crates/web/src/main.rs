@@ -1,0 +1,2 @@
+//! The native window.
+fn main() {}
