@@ -176,8 +176,8 @@ fn handle(profile: &Profile, refinement: u32) -> Surface {
             + (curve[3] - curve[2]) * (t * t))
             .normalize();
         let across = on_circle(segment, segments) * HANDLE_RADIUS;
-        // Counterclockwise around the tangent: from y to the curve's left.
-        let p = place + tangent.perp() * -across.y;
+        // Counterclockwise around the tangent: from y to the curve's left in the plane of x and z.
+        let p = place + tangent.perp() * across.y;
         DVec3::new(p.x, across.x, p.y)
     })
 }

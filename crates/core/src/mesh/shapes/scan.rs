@@ -14,7 +14,7 @@ use crate::random::Random;
 const PURPOSE: u64 = 0x7363_616e;
 
 /// A closed bumpy body of genus 0 about 2 units across with exactly `faces` triangles (at least 8, odd numbers one more)
-/// of irregular shape and size; every seed gives another body. O(n log n); a million triangles take about a second.
+/// of irregular shape and size; every seed gives another body. O(n log n); a million triangles take about two seconds.
 pub fn scan_like(seed: u64, faces: u32) -> PolygonSoup {
     let count = (faces.max(8).div_ceil(2) + 2) as usize;
     let mut random = Random::new(seed, PURPOSE);

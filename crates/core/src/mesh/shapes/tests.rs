@@ -100,6 +100,23 @@ fn cup_of_the_paper() {
 }
 
 #[test]
+fn cup_has_its_handle_wound_outward() {
+    let soup = cup(1);
+    // The handle comes last: 37 rings of 24 quads. Seen from the wall its open ends hide almost no volume.
+    let first = soup.polygon_count() - 2 * 24 * 37;
+    let from = DVec3::new(0.37, 0.0, 0.5);
+    let volume: f64 = (first..soup.polygon_count())
+        .map(|p| {
+            let corners: [u32; 3] = soup.polygon(p).try_into().expect("a triangle");
+            let [a, b, c] = corners.map(|v| soup.positions[v as usize] - from);
+            a.dot(b.cross(c)) / 6.0
+        })
+        .sum();
+    let length = 0.9;
+    assert!(near(volume, PI * 0.075 * 0.075 * length, 0.2), "{volume}");
+}
+
+#[test]
 fn cup_has_no_folded_grid() {
     // Around the holes the grid gives way to the handle: no two neighbours may fold over.
     let soup = cup(1);
