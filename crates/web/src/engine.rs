@@ -84,6 +84,9 @@ pub enum Answer {
     Cancelled,
 }
 
+/// The stage that answers [`Job::Place`].
+pub const PLACED: &str = "placed";
+
 /// Keeps the mesh and the runs between jobs.
 #[derive(Default)]
 pub struct Engine {
@@ -122,13 +125,19 @@ impl Engine {
         }
     }
 
-    fn try_handle(&mut self, job: Job, progress: &dyn Progress, clock: &dyn Fn() -> f64) -> Result<Answer, String> {
+    fn try_handle(
+        &mut self,
+        job: Job,
+        progress: &dyn Progress,
+        clock: &dyn Fn() -> f64,
+    ) -> Result<Answer, String> {
         if let Job::Load(source) = job {
             progress.begin("load", 1);
             let (mesh, repaired) = source.load()?;
             let scene = MeshScene::new(source.name(), &mesh, &repaired);
             self.looker = None;
-            self.loaded = Some(Loaded { name: source.name().to_owned(), mesh, repaired, placed: [None, None] });
+            self.loaded =
+                Some(Loaded { name: source.name().to_owned(), mesh, repaired, placed: [None, None] });
             return Ok(Answer::Loaded(Box::new(scene)));
         }
         let loaded = self.loaded.as_mut().ok_or("no mesh is loaded")?;
@@ -164,11 +173,12 @@ impl Engine {
                     .filter(|p| p.face.index() < loaded.mesh.face_count())
                     .collect();
                 loaded.placed[slot.index()] = Some(Placed { points, made: None });
-                Ok(Answer::Progress("placed".into(), None))
+                Ok(Answer::Progress(PLACED.into(), None))
             }
             Job::Look(looking) => {
                 let looker = self.looker.get_or_insert_with(|| Looker::new(&loaded.mesh));
-                let points = Slot::ALL.map(|slot| loaded.placed[slot.index()].as_ref().map(|p| p.points.as_slice()));
+                let points =
+                    Slot::ALL.map(|slot| loaded.placed[slot.index()].as_ref().map(|p| p.points.as_slice()));
                 Ok(Answer::Looked(looker.look(&loaded.mesh, points, &looking)))
             }
         }
@@ -232,8 +242,8 @@ fn on_strips(run: &Run, point: SurfacePoint) -> Sample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::source::Shape;
     use ldwrap::Silent;
+    use ldwrap::shapes::Shape;
 
     fn answer(engine: &mut Engine, job: Job) -> Answer {
         engine.handle(job, &Silent, &|| 0.0)
@@ -244,9 +254,12 @@ mod tests {
         let mut engine = Engine::default();
         assert!(matches!(answer(&mut engine, Job::Load(Source::Shape(Shape::Sphere))), Answer::Loaded(_)));
         let broken = Source::File { name: "broken.obj".into(), bytes: b"f 1 2 3".to_vec() };
-        let Answer::Failed(reason) = answer(&mut engine, Job::Load(broken)) else { panic!("a broken file was read") };
+        let Answer::Failed(reason) = answer(&mut engine, Job::Load(broken)) else {
+            panic!("a broken file was read")
+        };
         assert!(reason.contains("broken.obj"), "{reason}");
-        let Answer::Wrapped(Slot::A, run) = answer(&mut engine, Job::Wrap(Slot::A, Settings::default())) else {
+        let Answer::Wrapped(Slot::A, run) = answer(&mut engine, Job::Wrap(Slot::A, Settings::default()))
+        else {
             panic!("the sphere is gone")
         };
         assert_eq!(run.points.len(), 1000);
@@ -257,9 +270,13 @@ mod tests {
         let mut engine = Engine::default();
         answer(&mut engine, Job::Load(Source::Shape(Shape::Sphere)));
         answer(&mut engine, Job::Wrap(Slot::A, Settings::default()));
-        let Answer::Grown(_, figure) = answer(&mut engine, Job::Grow(Slot::A, 5, 0)) else { panic!("not grown") };
+        let Answer::Grown(_, figure) = answer(&mut engine, Job::Grow(Slot::A, 5, 0)) else {
+            panic!("not grown")
+        };
         assert_eq!((figure.faces.as_slice(), figure.degree), ([(5, 0)].as_slice(), 1));
-        let Answer::Grown(_, all) = answer(&mut engine, Job::Grow(Slot::A, 5, 1000)) else { panic!("not grown") };
+        let Answer::Grown(_, all) = answer(&mut engine, Job::Grow(Slot::A, 5, 1000)) else {
+            panic!("not grown")
+        };
         assert_eq!(all.faces.len(), 760);
         assert!((all.area_share - 1.0).abs() < 1e-9 && (all.point_share - 1.0).abs() < 1e-9);
         assert!(all.degree >= 1);
@@ -267,7 +284,10 @@ mod tests {
 
     #[test]
     fn work_without_a_mesh_says_so() {
-        let Answer::Failed(reason) = answer(&mut Engine::default(), Job::Judge(Slot::A, Measure::Energy)) else { panic!("no failure") };
+        let Answer::Failed(reason) = answer(&mut Engine::default(), Job::Judge(Slot::A, Measure::Energy))
+        else {
+            panic!("no failure")
+        };
         assert!(reason.contains("no mesh"), "{reason}");
     }
 }

@@ -8,16 +8,19 @@ use serde::{Deserialize, Serialize};
 pub enum Measure {
     /// The energy discrepancy.
     Energy,
+    /// How much area each point stands for, place by place.
+    Local,
 }
 
 impl Measure {
     /// All, in the order in which they are shown; quick ones first.
-    pub const ALL: [Self; 1] = [Self::Energy];
+    pub const ALL: [Self; 2] = [Self::Energy, Self::Local];
 
     /// What a person reads.
     pub fn name(self) -> &'static str {
         match self {
             Self::Energy => "Energy",
+            Self::Local => "Local",
         }
     }
 
@@ -25,6 +28,7 @@ impl Measure {
     pub fn meaning(self) -> &'static str {
         match self {
             Self::Energy => "Error of the share of points on one side of any plane, over all planes.",
+            Self::Local => "How much area each point stands for; shown as colours.",
         }
     }
 }
@@ -42,7 +46,12 @@ pub struct Verdict {
 }
 
 /// Measures points.
-pub fn judge(mesh: &SurfaceMesh, points: &[SurfacePoint], measure: Measure, progress: &dyn Progress) -> Verdict {
+pub fn judge(
+    mesh: &SurfaceMesh,
+    points: &[SurfacePoint],
+    measure: Measure,
+    progress: &dyn Progress,
+) -> Verdict {
     let _ = (mesh, points, measure, progress);
     Verdict::default()
 }

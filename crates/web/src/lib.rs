@@ -20,6 +20,7 @@ pub mod camera;
 pub mod engine;
 pub mod export;
 pub mod figure;
+pub mod journal;
 pub mod judge;
 pub mod look;
 pub mod model;

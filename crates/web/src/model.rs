@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::Vec2;
+use ldwrap::shapes::Shape;
 use serde_json::{Value, json};
 
 use crate::camera::{Orbit, PlaneView};
@@ -17,7 +18,7 @@ use crate::look::{Look, Looking, Occluder};
 use crate::pick::Pick;
 use crate::scene::{Layout, MeshScene, RunScene};
 use crate::settings::{Link, Method, Settings};
-use crate::source::{Shape, Source};
+use crate::source::Source;
 
 /// Which engine a job is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,6 +108,8 @@ pub struct Model {
     pub notice: Option<Notice>,
     /// Files made, to be saved.
     pub files: Vec<(String, Vec<u8>)>,
+    /// Whether a picture of the views is to be saved.
+    pub picture_wanted: bool,
     /// Where the work in hand stands.
     pub stage: Option<(String, Option<f32>)>,
     source: Option<Source>,
@@ -143,6 +146,7 @@ impl Default for Model {
             trail: VecDeque::new(),
             notice: None,
             files: Vec::new(),
+            picture_wanted: false,
             stage: None,
             source: None,
             loading: None,
@@ -163,7 +167,7 @@ impl Model {
         let mut model = Self::default();
         let Link { shape, settings } = link.unwrap_or_default();
         model.settings[0] = settings;
-        model.load(Source::Shape(Shape::from_name(&shape).unwrap_or_default()));
+        model.load(Source::Shape(shape.parse().unwrap_or(Shape::Sphere)));
         model
     }
 

@@ -49,29 +49,50 @@ fn meet(origin: Vec3, direction: Vec3, [a, b, c]: [Vec3; 3]) -> Option<f32> {
     (v >= 0.0 && u + v <= 1.0 && t > 0.0).then_some(t)
 }
 
+/// A view and the place in it that is pointed at.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// From space, or from the plane, to clip space.
+    pub matrix: Mat4,
+    /// The view's width over its height.
+    pub aspect: f32,
+    /// The place, in clip space.
+    pub clip: Vec2,
+}
+
 /// What a ray through the surface view points at.
-pub fn on_surface(mesh: &MeshScene, run: Option<&RunScene>, eye: Vec3, direction: Vec3, matrix: Mat4, aspect: f32, clip: Vec2) -> Option<Pick> {
+pub fn on_surface(
+    mesh: &MeshScene,
+    run: Option<&RunScene>,
+    eye: Vec3,
+    direction: Vec3,
+    seen: &Seen,
+) -> Option<Pick> {
     let (face, distance) = triangle_on_ray(mesh, eye, direction)?;
     let hit = eye + distance * direction;
     // Points behind the surface under the pointer are out of sight: only those about as near as the hit count.
     let margin = 0.03 * mesh.radius;
     let near = |p: &Vec3| (*p - eye).length() <= (hit - eye).length() + margin;
     let point = run.and_then(|run| {
-        let places = run.points.iter().map(|p| near(&p.position).then(|| matrix.project_point3(p.position).truncate()));
-        nearest_point(places, aspect, clip)
+        let places = run
+            .points
+            .iter()
+            .map(|p| near(&p.position).then(|| seen.matrix.project_point3(p.position).truncate()));
+        nearest_point(places, seen.aspect, seen.clip)
     });
     let face = point.zip(run).map_or(face, |(point, run)| run.points[point as usize].face);
     Some(Pick { face, point })
 }
 
 /// What a place of the planar view points at.
-pub fn in_plane(run: &RunScene, layout: Layout, place: Vec2, matrix: Mat4, aspect: f32, clip: Vec2) -> Option<Pick> {
+pub fn in_plane(run: &RunScene, layout: Layout, place: Vec2, seen: &Seen) -> Option<Pick> {
     let places = (0..run.points.len())
-        .map(|i| Some(matrix.project_point3(run.planar_point(layout, i).extend(0.0)).truncate()));
-    if let Some(point) = nearest_point(places, aspect, clip) {
+        .map(|i| Some(seen.matrix.project_point3(run.planar_point(layout, i).extend(0.0)).truncate()));
+    if let Some(point) = nearest_point(places, seen.aspect, seen.clip) {
         return Some(Pick { face: run.points[point as usize].face, point: Some(point) });
     }
-    let face = (0..run.strip_of.len() as u32).find(|&face| holds(run.planar_triangle(layout, face), place))?;
+    let face =
+        (0..run.strip_of.len() as u32).find(|&face| holds(run.planar_triangle(layout, face), place))?;
     Some(Pick { face, point: None })
 }
 
@@ -120,7 +141,8 @@ mod tests {
 
     #[test]
     fn the_nearest_point_within_reach_is_taken() {
-        let places = [Some(Vec2::new(0.5, 0.0)), None, Some(Vec2::new(0.01, 0.0)), Some(Vec2::new(0.004, 0.0))];
+        let places =
+            [Some(Vec2::new(0.5, 0.0)), None, Some(Vec2::new(0.01, 0.0)), Some(Vec2::new(0.004, 0.0))];
         assert_eq!(nearest_point(places.into_iter(), 1.0, Vec2::ZERO), Some(3));
         assert_eq!(nearest_point(places.into_iter(), 1.0, Vec2::new(-0.5, 0.0)), None);
     }

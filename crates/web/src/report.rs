@@ -46,7 +46,13 @@ pub fn repaired_in_words(repaired: &RepairReport) -> Vec<String> {
 }
 
 /// The report of a run, as the command line program writes it; `seconds` is the whole run's time.
-pub fn of_run(mesh: &SurfaceMesh, repaired: &RepairReport, options: &Options, run: &Run, seconds: f64) -> Value {
+pub fn of_run(
+    mesh: &SurfaceMesh,
+    repaired: &RepairReport,
+    options: &Options,
+    run: &Run,
+    seconds: f64,
+) -> Value {
     let gap = options.tolerance * run.d_m;
     let strips: Vec<Value> = run
         .strips

@@ -109,9 +109,8 @@ impl MeshScene {
     /// The picture of a mesh.
     pub fn new(name: &str, mesh: &SurfaceMesh, repaired: &RepairReport) -> Self {
         let (low, high) = mesh.bounds();
-        let corners = (0..mesh.face_count())
-            .flat_map(|f| mesh.triangle(FaceId::new(f)).map(|p| p.as_vec3()))
-            .collect();
+        let corners =
+            (0..mesh.face_count()).flat_map(|f| mesh.triangle(FaceId::new(f)).map(|p| p.as_vec3())).collect();
         Self {
             name: name.to_owned(),
             corners,
@@ -160,7 +159,8 @@ impl RunScene {
                 }
             }
             for edge in &strip.border {
-                sides[edge.halfedge.0 as usize] = if strip.is_open(edge, gap) { Side::Open } else { Side::Closed };
+                sides[edge.halfedge.0 as usize] =
+                    if strip.is_open(edge, gap) { Side::Open } else { Side::Closed };
             }
         }
         let (apart, apart_extent) = lay_apart(&run.strips);
@@ -224,7 +224,12 @@ impl RunScene {
 
 fn strip_scene(strip: &Strip, gap: f64, in_domain: Vec2, apart: Vec2) -> StripScene {
     let length = |open_only: bool| {
-        strip.border.iter().filter(|e| !open_only || strip.is_open(e, gap)).map(|e| strip.border_length(e)).sum()
+        strip
+            .border
+            .iter()
+            .filter(|e| !open_only || strip.is_open(e, gap))
+            .map(|e| strip.border_length(e))
+            .sum()
     };
     StripScene {
         faces: strip.faces.len() as u32,

@@ -123,7 +123,8 @@ impl Link {
 
     /// Reads the part of an address behind `#`; `None` when there is nothing that can be read.
     pub fn from_fragment(fragment: &str) -> Option<Self> {
-        let text = percent_encoding::percent_decode_str(fragment.trim_start_matches('#')).decode_utf8().ok()?;
+        let text =
+            percent_encoding::percent_decode_str(fragment.trim_start_matches('#')).decode_utf8().ok()?;
         serde_json::from_str(&text).ok()
     }
 }
@@ -134,7 +135,12 @@ mod tests {
 
     #[test]
     fn a_link_gives_back_its_settings() {
-        let settings = Settings { seed: 7, request: Request::Spacing(0.25), method: Method::Paper, ..Settings::default() };
+        let settings = Settings {
+            seed: 7,
+            request: Request::Spacing(0.25),
+            method: Method::Paper,
+            ..Settings::default()
+        };
         let link = Link { shape: "cup".into(), settings };
         let fragment = link.fragment();
         assert!(fragment.chars().all(|c| c.is_ascii_alphanumeric() || c == '%'), "{fragment}");
