@@ -17,6 +17,7 @@ mod random;
 mod sample;
 pub mod segment;
 pub mod sequence;
+pub mod spatial;
 pub mod unfold;
 pub mod wrap;
 
