@@ -16,6 +16,11 @@ mod profile;
 mod spacing;
 mod testset;
 mod tree;
+pub mod decomposition;
+mod norms;
+mod patch;
+pub mod plane;
+mod view;
 
 #[cfg(test)]
 mod testmesh;
@@ -29,3 +34,5 @@ pub use half_space::{HalfSpace, HalfSpaceOptions, HalfSpaceReport, half_space};
 pub use integration::{IntegrationOptions, IntegrationReport, integration};
 pub use norms::{Norms, Shares};
 pub use spacing::{SpacingOptions, SpacingReport, spacing};
+pub use patch::{PatchOptions, patch};
+pub use view::{ViewOptions, ViewReport, Views, cameras, view};
