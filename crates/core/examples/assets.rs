@@ -17,8 +17,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The names and contents of all files.
-pub(crate) fn files() -> Result<Vec<(String, Vec<u8>)>, Box<dyn Error>> {
+/// Files with their names.
+type Files = Vec<(String, Vec<u8>)>;
+
+/// All files.
+pub(crate) fn files() -> Result<Files, Box<dyn Error>> {
     let meshes: [(&str, &str, PolygonSoup); 8] = [
         ("sphere.obj", "the paper's sphere (figure 4)", Shape::Sphere.generate()),
         ("cup.ply", "a cup with the paper's counts (figure 5)", Shape::Cup.generate()),
