@@ -1,6 +1,7 @@
 //! Does the work: jobs in, answers out. It runs in a thread or a web worker, never in the page itself, and keeps the
 //! mesh and the runs between jobs.
 
+use ldwrap::baseline;
 use ldwrap::pipeline::{self, OptionsError, Run};
 use ldwrap::{FaceId, Progress, RepairReport, Sample, SurfaceMesh, SurfacePoint};
 use serde::{Deserialize, Serialize};
@@ -109,7 +110,6 @@ pub(crate) struct Placed {
 
 /// A run that this engine made itself.
 pub(crate) struct Made {
-    pub(crate) settings: Settings,
     pub(crate) run: Run,
     pub(crate) scene: RunScene,
 }
@@ -209,7 +209,7 @@ pub(crate) fn make(
         OptionsError::Cancelled => "cancelled".to_owned(),
         other => other.to_string(),
     })?;
-    if let Some(points) = baseline(mesh, settings.method, run.samples.len(), settings.seed) {
+    if let Some(points) = rival(mesh, settings.method, run.samples.len(), settings.seed) {
         run.samples = points.into_iter().map(|point| on_strips(&run, point)).collect();
         run.correction.projected = 0;
         run.correction.removed = 0;
@@ -218,15 +218,16 @@ pub(crate) fn make(
     let report = report::of_run(mesh, repaired, &options, &run, seconds);
     let report = serde_json::to_string_pretty(&report).map_err(|e| e.to_string())?;
     let scene = RunScene::new(mesh, &run, options.tolerance, seconds, report);
-    Ok(Made { settings, run, scene })
+    Ok(Made { run, scene })
 }
 
 /// The points of a baseline; `None` for the methods that wrap.
-fn baseline(mesh: &SurfaceMesh, method: Method, count: usize, seed: u64) -> Option<Vec<SurfacePoint>> {
-    let _ = (mesh, count, seed);
+fn rival(mesh: &SurfaceMesh, method: Method, count: usize, seed: u64) -> Option<Vec<SurfacePoint>> {
     match method {
         Method::Wrap | Method::Paper => None,
-        Method::Random => None,
+        Method::Random => Some(baseline::random(mesh, count, seed)),
+        Method::Hilbert => Some(baseline::hilbert(mesh, count, seed)),
+        Method::Poisson => Some(baseline::poisson(mesh, count, seed)),
     }
 }
 

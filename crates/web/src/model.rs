@@ -167,7 +167,7 @@ impl Model {
         let mut model = Self::default();
         let Link { shape, settings } = link.unwrap_or_default();
         model.settings[0] = settings;
-        model.load(Source::Shape(shape.parse().unwrap_or(Shape::Sphere)));
+        model.load(Source::Shape(shape.parse().unwrap_or(Shape::Cup)));
         model
     }
 
@@ -526,8 +526,8 @@ mod tests {
         model.load(Source::File { name: "broken.ply".into(), bytes: b"no mesh".to_vec() });
         office.work(&mut model);
         assert!(matches!(&model.notice, Some(Notice::Problem(text)) if text.contains("broken.ply")));
-        assert_eq!(model.mesh.as_ref().unwrap().name, "sphere");
-        assert_eq!(model.link().shape, "sphere");
+        assert_eq!(model.mesh.as_ref().unwrap().name, "cup");
+        assert_eq!(model.link().shape, "cup");
         model.settings[0].seed = 5;
         model.settle();
         office.work(&mut model);

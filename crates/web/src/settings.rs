@@ -17,11 +17,15 @@ pub enum Method {
     Paper,
     /// Independent random points: what every measure is compared with.
     Random,
+    /// Triangles along a Hilbert curve, no unfolding.
+    Hilbert,
+    /// Sample elimination.
+    Poisson,
 }
 
 impl Method {
     /// Every method, in the order in which they are offered.
-    pub const ALL: [Self; 3] = [Self::Wrap, Self::Paper, Self::Random];
+    pub const ALL: [Self; 5] = [Self::Wrap, Self::Paper, Self::Random, Self::Hilbert, Self::Poisson];
 
     /// What a person reads.
     pub fn name(self) -> &'static str {
@@ -29,6 +33,8 @@ impl Method {
             Self::Wrap => "Wrap (ours)",
             Self::Paper => "The paper's",
             Self::Random => "Random",
+            Self::Hilbert => "Hilbert curve",
+            Self::Poisson => "Poisson disks",
         }
     }
 }

@@ -46,8 +46,9 @@ impl Source {
 /// # Errors
 /// What is wrong, for a person.
 pub fn read(name: &str, bytes: &[u8]) -> Result<PolygonSoup, String> {
-    let _ = bytes;
-    Err(format!("{name}: no reader yet"))
+    let alone =
+        |address: &str| Err(format!("{address} lies beside the file: open a .glb, which holds everything"));
+    ldwrap::io::read_mesh(bytes, Some(name), &alone).map_err(|e| format!("{name}: {e}"))
 }
 
 /// Shapes are sent by their names.

@@ -17,7 +17,6 @@ mod spacing;
 mod testset;
 mod tree;
 pub mod decomposition;
-mod norms;
 mod patch;
 pub mod plane;
 mod view;

@@ -20,17 +20,6 @@ pub(crate) struct Palette {
     pub(crate) background: Color32,
 }
 
-/// Okabe and Ito's colours (2008) without the purple, which is too near to the pink of corrected points.
-const STRIPS: [[u8; 3]; 7] = [
-    [86, 180, 233],
-    [230, 159, 0],
-    [0, 158, 115],
-    [240, 228, 66],
-    [70, 130, 200],
-    [213, 110, 50],
-    [165, 165, 165],
-];
-
 impl Palette {
     /// The colours for dark or light.
     pub(crate) fn new(dark: bool) -> Self {
@@ -43,13 +32,6 @@ impl Palette {
             rim: Vec3::ONE,
             background,
         }
-    }
-
-    /// The colour of a strip: neighbours in number differ; each round of the list is a little darker.
-    pub(crate) fn strip(&self, strip: u32) -> [u8; 3] {
-        let round = (strip as usize / STRIPS.len()) % 3;
-        let shade = [1.0, 0.82, 0.66][round];
-        STRIPS[strip as usize % STRIPS.len()].map(|c| (f32::from(c) * shade) as u8)
     }
 
     /// The colour of a place where points stand for this much of what they should: blue where they lie too thin,

@@ -9,6 +9,7 @@ use glam::{Vec2, Vec3};
 use ldwrap::Origin;
 
 use super::theme::Palette;
+use crate::export::strip_colour;
 use crate::figure::Figure;
 use crate::judge::Verdict;
 use crate::model::Colouring;
@@ -86,7 +87,7 @@ impl Colours<'_> {
                 let strip = run.strip_of[face];
                 let mut colour = match local {
                     Some(verdict) => self.palette.surplus(verdict.local[face]),
-                    None => self.palette.strip(strip),
+                    None => strip_colour(strip),
                 };
                 if self.strip == Some(strip) && local.is_none() {
                     colour = colour.map(|c| c.saturating_add((255 - c) / 3));
@@ -99,7 +100,7 @@ impl Colours<'_> {
         if let Some(figure) = self.figure {
             for (face, part) in &figure.faces {
                 let data = &mut faces[*face as usize];
-                let [r, g, b] = self.palette.strip(*part);
+                let [r, g, b] = strip_colour(*part);
                 *data = [r, g, b, data[3] | 1 << 6];
             }
         }
