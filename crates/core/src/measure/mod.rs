@@ -7,15 +7,19 @@
 
 mod ball;
 mod component;
+pub mod decomposition;
 mod energy;
 mod half_space;
 mod halving;
 mod integration;
 mod norms;
+mod patch;
+pub mod plane;
 mod profile;
 mod spacing;
 mod testset;
 mod tree;
+mod view;
 
 #[cfg(test)]
 mod testmesh;
@@ -28,4 +32,6 @@ pub use energy::{EnergyOptions, EnergyPlanes, EnergyReport, energy};
 pub use half_space::{HalfSpace, HalfSpaceOptions, HalfSpaceReport, HalfSpaces, half_space};
 pub use integration::{IntegrationOptions, IntegrationReport, TestFunctions, integration};
 pub use norms::{Norms, Shares};
+pub use patch::{PatchOptions, patch};
 pub use spacing::{SpacingOptions, SpacingReport, spacing};
+pub use view::{ViewOptions, ViewReport, Views, cameras, view};
