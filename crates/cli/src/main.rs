@@ -1,2 +1,5 @@
 //! The program `ldwrap-cli`.
+
+mod picture;
+
 fn main() {}

@@ -1,0 +1,8 @@
+//! Pictures of strips and points: functions from values to bytes, no files.
+
+mod palette;
+mod preview;
+mod svg;
+
+pub(crate) use preview::{PreviewOptions, preview_png};
+pub(crate) use svg::strips_svg;

@@ -1,0 +1,1 @@
+//! Colours of strips and points.
