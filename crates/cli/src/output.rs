@@ -132,24 +132,20 @@ fn check_file(path: &Path) -> anyhow::Result<()> {
     }
 }
 
-/// A file that is written but does not have its name yet.
-struct Staged {
-    name: PathBuf,
-    content: Content,
-}
-
-enum Content {
-    /// A complete temporary file, to be renamed to the path.
-    Renamed(NamedTempFile, PathBuf),
-    /// For devices and pipes, which cannot be replaced by renaming.
-    Direct(Vec<u8>),
-}
-
 /// The outputs of a run on their way.
 #[derive(Default)]
 pub(crate) struct Outputs {
-    staged: Vec<Staged>,
     stdout: Vec<u8>,
+    /// For devices and pipes, which cannot be replaced by renaming.
+    direct: Vec<(PathBuf, Vec<u8>)>,
+    /// Complete temporary files, with the names that were asked for and the files behind those names.
+    renamed: Vec<Renamed>,
+}
+
+struct Renamed {
+    name: PathBuf,
+    file: NamedTempFile,
+    target: PathBuf,
 }
 
 impl Outputs {
@@ -157,46 +153,42 @@ impl Outputs {
     pub(crate) fn stage(&mut self, destination: &Destination, bytes: Vec<u8>) -> anyhow::Result<()> {
         match destination {
             Destination::Stdout => self.stdout = bytes,
-            Destination::File(path) => {
-                let content =
-                    content(path, bytes).with_context(|| format!("{}: cannot be written", path.display()))?;
-                self.staged.push(Staged { name: path.clone(), content });
+            Destination::File(name) if fs::metadata(name).is_ok_and(|found| !found.is_file()) => {
+                self.direct.push((name.clone(), bytes));
+            }
+            Destination::File(name) => {
+                // Through a link the file that it points to is replaced, not the link.
+                let target = fs::canonicalize(name).unwrap_or_else(|_| name.clone());
+                let file = temporary(&target, &bytes).with_context(|| failed(name))?;
+                self.renamed.push(Renamed { name: name.clone(), file, target });
             }
         }
         Ok(())
     }
 
-    /// Writes stdout, then gives every file its name; returns the files.
+    /// Writes stdout and devices, then gives every file its name; returns the names.
     pub(crate) fn commit(self) -> anyhow::Result<Vec<PathBuf>> {
         write_stdout(&self.stdout)?;
-        let mut names = Vec::with_capacity(self.staged.len());
-        for Staged { name, content } in self.staged {
-            let failed = || format!("{}: cannot be written", name.display());
-            match content {
-                Content::Renamed(file, path) => {
-                    file.persist(path).map_err(|e| e.error).with_context(failed)?;
-                }
-                Content::Direct(bytes) => {
-                    fs::OpenOptions::new()
-                        .write(true)
-                        .open(&name)
-                        .and_then(|mut file| file.write_all(&bytes))
-                        .with_context(failed)?;
-                }
-            }
+        let mut names = Vec::new();
+        for (name, bytes) in self.direct {
+            let mut device =
+                fs::OpenOptions::new().write(true).open(&name).with_context(|| failed(&name))?;
+            device.write_all(&bytes).with_context(|| failed(&name))?;
+            names.push(name);
+        }
+        for Renamed { name, file, target } in self.renamed {
+            file.persist(target).map_err(|error| error.error).with_context(|| failed(&name))?;
             names.push(name);
         }
         Ok(names)
     }
 }
 
-fn content(path: &Path, bytes: Vec<u8>) -> io::Result<Content> {
-    let found = fs::metadata(path).ok();
-    if found.as_ref().is_some_and(|m| !m.is_file()) {
-        return Ok(Content::Direct(bytes));
-    }
-    // Through a link the file that it points to is replaced, not the link.
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+fn failed(name: &Path) -> String {
+    format!("{}: cannot be written", name.display())
+}
+
+fn temporary(target: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(".ldwrap-");
     #[cfg(unix)]
@@ -205,13 +197,13 @@ fn content(path: &Path, bytes: Vec<u8>) -> io::Result<Content> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder(&path))?;
-    file.write_all(&bytes)?;
+    let mut file = builder.tempfile_in(folder(target))?;
+    file.write_all(bytes)?;
     file.flush()?;
-    if let Some(found) = found {
+    if let Ok(found) = fs::metadata(target) {
         file.as_file().set_permissions(found.permissions())?;
     }
-    Ok(Content::Renamed(file, path))
+    Ok(file)
 }
 
 /// Writes to stdout. A reader that stopped reading has what it wanted: no error.

@@ -1,6 +1,6 @@
 //! Where the work stands: how long each stage took, and bars on stderr when a person looks.
 
-use std::io::{IsTerminal, stderr};
+use std::io::{IsTerminal, Write, stderr};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -12,6 +12,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 pub(crate) struct Stages {
     state: Mutex<State>,
     bar: Option<ProgressBar>,
+    quiet: bool,
 }
 
 struct State {
@@ -24,7 +25,7 @@ struct State {
 pub(crate) struct Seconds(Vec<(&'static str, f64)>);
 
 impl Stages {
-    /// Begins to listen; `quiet` shows no bar.
+    /// Begins to listen; `quiet` shows no bar and says nothing.
     pub(crate) fn new(quiet: bool) -> Self {
         let bar = (!quiet && stderr().is_terminal()).then(|| {
             let bar = ProgressBar::new(0);
@@ -32,7 +33,22 @@ impl Stages {
             bar.enable_steady_tick(Duration::from_millis(100));
             bar
         });
-        Self { state: Mutex::new(State { done: Seconds::default(), current: None }), bar }
+        Self { state: Mutex::new(State { done: Seconds::default(), current: None }), bar, quiet }
+    }
+
+    /// Prints a line on stderr, above the bar; nothing if the run is quiet.
+    pub(crate) fn say(&self, line: &str) {
+        if self.quiet {
+            return;
+        }
+        let print = || {
+            // A closed stderr is no reason to stop.
+            let _ = writeln!(stderr(), "{line}");
+        };
+        match &self.bar {
+            Some(bar) => bar.suspend(print),
+            None => print(),
+        }
     }
 
     /// The seconds of every stage so far; the one that is running ends now and its bar goes away.

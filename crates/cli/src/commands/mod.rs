@@ -4,3 +4,8 @@ pub(crate) mod info;
 pub(crate) mod shape;
 pub(crate) mod strips;
 pub(crate) mod wrap;
+
+/// `1 point`, `2 points`.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}

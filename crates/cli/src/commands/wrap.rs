@@ -1,10 +1,15 @@
 //! `wrap`: points on a mesh.
 
+use std::path::PathBuf;
+
 use anyhow::Context;
+use ldwrap::Progress;
+use ldwrap::correct::Correction;
+use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{self, Options, Run};
-use ldwrap::{Progress, SurfaceMesh};
 
 use crate::args::WrapArgs;
+use crate::commands::counted;
 use crate::exit::Outcome;
 use crate::input::{self, Input};
 use crate::job::{self, WrapOutputs};
@@ -40,7 +45,7 @@ fn write(
     run: &Run,
     wanted: &WrapOutputs,
     stages: &Stages,
-) -> anyhow::Result<Vec<std::path::PathBuf>> {
+) -> anyhow::Result<Vec<PathBuf>> {
     let Input { mesh, repaired, .. } = input;
     let mut outputs = Outputs::default();
     if wanted.strips.is_some() || wanted.preview.is_some() {
@@ -67,9 +72,25 @@ fn write(
 
 fn summary(input: &Input, run: &Run) -> Vec<String> {
     let Input { name, mesh, .. } = input;
-    let R { bound, refined, exact } = run.irregularity;
+    let Irregularity { bound, refined, exact } = run.irregularity;
+    let Correction { projected, removed } = run.correction;
+    let count = run.samples.len();
     let mut lines = vec![
-        format!("{name}: {} triangles, area {}", mesh.face_count(), rounded(mesh.area())),
+        format!(
+            "{name}: {} on {} in {}, mean distance {:.4e}",
+            counted(count, "point"),
+            counted(mesh.face_count(), "triangle"),
+            counted(run.strips.strips.len(), "strip"),
+            run.d_m
+        ),
+        format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact"),
+        format!("corrected: {projected} projected, {removed} removed"),
     ];
+    if let Some(equalize) = &run.equalize {
+        lines.push(format!(
+            "equalized: spread of areas {:.3} before, {:.3} after; moved {:.3} mean distances",
+            equalize.spread_before, equalize.spread_after, equalize.moved
+        ));
+    }
     lines
 }
