@@ -14,6 +14,7 @@ mod parallel;
 pub mod pipeline;
 mod progress;
 mod random;
+mod request;
 mod sample;
 pub mod segment;
 pub mod sequence;

@@ -3,28 +3,16 @@
 use crate::correct::Correction;
 use crate::domain::PlanarDomain;
 use crate::equalize::{EqualizeOptions, EqualizeReport};
-use crate::irregularity::Irregularity;
+use crate::irregularity::{Irregularity, irregularity};
 use crate::mesh::SurfaceMesh;
 use crate::progress::Progress;
+use crate::request::{MOST_DOMAIN_POINTS, Scattered, Scattering};
 use crate::sample::Sample;
-use crate::segment::{SegmentOptions, Segmentation};
-use crate::sequence::Sequence;
-use crate::unfold::Strips;
+use crate::segment::{SegmentOptions, Segmentation, segment};
+use crate::sequence::{self, Sequence, SequenceError};
+use crate::unfold::{Strips, unfold};
 
-/// How many points are wanted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-pub enum Request {
-    /// Exactly this many points.
-    Count(usize),
-    /// Points per squared unit of the mesh.
-    Density(f64),
-    /// The mean distance d_m between neighbours, in units of the mesh.
-    Spacing(f64),
-    /// The largest irregularity ratio R (eq. 8) allowed; the density rises until it holds.
-    Irregularity(f64),
-}
+pub use crate::request::Request;
 
 /// Everything that decides the points, besides the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +79,15 @@ pub enum OptionsError {
         /// What it may be.
         allowed: &'static str,
     },
+    /// The sequence does not exist.
+    #[error(transparent)]
+    Sequence(#[from] SequenceError),
+    /// More points of the planar domain would be needed than can be numbered.
+    #[error("{wanted:.3e} points of the planar domain are needed, at most {MOST_DOMAIN_POINTS} can be: ask for fewer points")]
+    TooMany {
+        /// How many.
+        wanted: f64,
+    },
     /// The caller cancelled.
     #[error("cancelled")]
     Cancelled,
@@ -102,6 +99,39 @@ pub enum OptionsError {
 /// # Errors
 /// [`OptionsError`] when an option is out of range or the caller cancelled.
 pub fn run(mesh: &SurfaceMesh, options: &Options, progress: &dyn Progress) -> Result<Run, OptionsError> {
-    let _ = (mesh, options, progress);
-    Err(OptionsError::Cancelled)
+    check(options)?;
+    let stage = |name| {
+        progress.begin(name, 1);
+        if progress.is_cancelled() { Err(OptionsError::Cancelled) } else { Ok(()) }
+    };
+    stage("segment")?;
+    let segmentation = segment(mesh, &options.segment);
+    stage("unfold")?;
+    let strips = unfold(mesh, &segmentation);
+    let domain = PlanarDomain::lay_out(&strips);
+    stage("wrap")?;
+    let scattering = Scattering {
+        mesh,
+        strips: &strips,
+        domain: &domain,
+        sequence: options.sequence,
+        shift: sequence::shift_of_seed(options.seed),
+        tolerance: options.tolerance,
+    };
+    let Scattered { samples, correction, d_m } = scattering.meet(options.request)?;
+    stage("irregularity")?;
+    let irregularity = irregularity(&strips, d_m, options.tolerance * d_m);
+    Ok(Run { segmentation, strips, domain, correction, irregularity, equalize: None, d_m, samples })
+}
+
+fn check(options: &Options) -> Result<(), OptionsError> {
+    options.sequence.validate()?;
+    let finite = |name, value: f64, ok: bool, allowed| {
+        if ok { Ok(()) } else { Err(OptionsError::OutOfRange { name, value: value.to_string(), allowed }) }
+    };
+    let SegmentOptions { flatness_angle, smallest_share, order: _ } = options.segment;
+    let half_turn = std::f64::consts::PI;
+    finite("flatness angle", flatness_angle, (0.0..=half_turn).contains(&flatness_angle), "from 0 to pi radians")?;
+    finite("smallest share", smallest_share, (0.0..=1.0).contains(&smallest_share), "from 0 to 1")?;
+    finite("tolerance", options.tolerance, (0.0..=1.0).contains(&options.tolerance), "from 0 to 1 (in units of d_m)")
 }

@@ -1,7 +1,14 @@
 //! Segmentation (paper, 4.1): which triangles form a segment, joined across which edges.
 
-use crate::ids::{FaceId, HalfedgeId};
+mod growth;
+mod seeds;
+mod skeleton;
+
+use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
+use growth::Growth;
+use seeds::Seeds;
+use skeleton::skeleton;
 
 /// In which order the neighbours of a growing segment are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,8 +67,43 @@ pub struct Segmentation {
     pub segments: Vec<Segment>,
 }
 
-/// Cuts the surface into segments (paper, 4.1 steps 1 to 5).
+impl Segmentation {
+    /// The segment of every face.
+    pub fn segment_of_face(&self, face_count: usize) -> Vec<StripId> {
+        let mut of_face = vec![StripId(0); face_count];
+        for (s, segment) in self.segments.iter().enumerate() {
+            for attachment in &segment.attachments {
+                of_face[attachment.face.index()] = StripId::new(s);
+            }
+        }
+        of_face
+    }
+}
+
+/// Cuts the surface into segments (paper, 4.1 steps 1 to 5). Every face ends up in exactly one segment.
+///
+/// Cost: O(F log F) for F faces.
 pub fn segment(mesh: &SurfaceMesh, options: &SegmentOptions) -> Segmentation {
-    let _ = (mesh, options);
-    Segmentation::default()
+    let mut seeds = Seeds::new(mesh);
+    let mut growth = Growth::new(mesh, options);
+    let smallest = (options.smallest_share * mesh.face_count() as f64).ceil() as usize;
+    let mut segments = Vec::new();
+    while let Some(seed) = seeds.next(&growth) {
+        growth.start_segment();
+        match options.order {
+            GrowthOrder::BoundaryWalk | GrowthOrder::LongestFirst => skeleton(&mut growth, seed),
+            // A skeleton along long edges crosses creases, which is what flattest first is there to avoid.
+            GrowthOrder::FlattestFirst => growth.plant(seed.face()),
+        }
+        growth.grow_flat();
+        growth.take_leftovers();
+        while growth.size() < smallest && growth.grow_ring() {
+            growth.grow_flat();
+            growth.take_leftovers();
+        }
+        let segment = growth.finish_segment();
+        seeds.save_border(mesh, &growth, &segment);
+        segments.push(segment);
+    }
+    Segmentation { segments }
 }

@@ -1,11 +1,15 @@
 //! Unfolding (paper, 4.1): segments laid congruently in the plane.
 
+mod border;
+mod lay;
+
 use std::ops::Range;
 
 use glam::DVec2;
 
 use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
+use crate::parallel;
 use crate::segment::Segmentation;
 
 /// What lies on the other side of a border edge of a strip.
@@ -117,8 +121,22 @@ impl Strips {
     }
 }
 
-/// Lays every segment in the plane, each triangle congruent to its original.
+/// Lays every segment in the plane, each triangle congruent to its original. Linear time.
+///
+/// The corners of a triangle are computed from its own shape in space and the edge it is attached to, so edge
+/// lengths are off by a few rounding errors of the strip's extent however long the chain of triangles is.
 pub fn unfold(mesh: &SurfaceMesh, segmentation: &Segmentation) -> Strips {
-    let _ = (mesh, segmentation);
-    Strips { strips: Vec::new(), places: Vec::new() }
+    let mut places = vec![FacePlace { strip: StripId(0), index: 0 }; mesh.face_count()];
+    for (s, segment) in segmentation.segments.iter().enumerate() {
+        for (i, attachment) in segment.attachments.iter().enumerate() {
+            places[attachment.face.index()] = FacePlace { strip: StripId::new(s), index: i as u32 };
+        }
+    }
+    let strips = parallel::map(segmentation.segments.len(), |s| {
+        let mut planar = lay::lay(mesh, &segmentation.segments[s], &places);
+        lay::close_seams(mesh, StripId::new(s), &places, &mut planar);
+        lay::settle(&mut planar);
+        border::strip(mesh, StripId::new(s), &places, planar)
+    });
+    Strips { strips, places }
 }

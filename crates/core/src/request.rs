@@ -1,0 +1,179 @@
+//! Meets a request for points: how many points of the planar domain give the number, density, spacing or
+//! irregularity that is wanted (paper, 4.2 steps 2 and 4).
+
+use glam::DVec2;
+
+use crate::correct::{Corrected, Correction, correct};
+use crate::domain::{DomainPoints, PlanarDomain};
+use crate::irregularity;
+use crate::mesh::SurfaceMesh;
+use crate::pipeline::OptionsError;
+use crate::sample::Sample;
+use crate::sequence::Sequence;
+use crate::unfold::Strips;
+use crate::wrap::wrap;
+
+/// The most points that the planar domain can hold: they are numbered by 32 bits, and 2^30 of them take 20 GiB.
+pub(crate) const MOST_DOMAIN_POINTS: u32 = 1 << 30;
+
+/// How many points are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Request {
+    /// Exactly this many points.
+    Count(usize),
+    /// Points per squared unit of the mesh.
+    Density(f64),
+    /// The mean distance d_m between neighbours, in units of the mesh.
+    Spacing(f64),
+    /// The largest irregularity ratio R (eq. 8) allowed; the density rises until it holds.
+    Irregularity(f64),
+}
+
+/// What points are scattered on.
+pub(crate) struct Scattering<'a> {
+    pub(crate) mesh: &'a SurfaceMesh,
+    pub(crate) strips: &'a Strips,
+    pub(crate) domain: &'a PlanarDomain,
+    pub(crate) sequence: Sequence,
+    pub(crate) shift: DVec2,
+    /// In units of d_m.
+    pub(crate) tolerance: f64,
+}
+
+/// The samples that meet a request.
+pub(crate) struct Scattered {
+    pub(crate) samples: Vec<Sample>,
+    pub(crate) correction: Correction,
+    /// sqrt(area / number of points wanted).
+    pub(crate) d_m: f64,
+}
+
+impl Scattering<'_> {
+    pub(crate) fn meet(&self, request: Request) -> Result<Scattered, OptionsError> {
+        let positive = |name, value: f64| {
+            if value.is_finite() && value > 0.0 {
+                Ok(value)
+            } else {
+                let allowed = "finite and above 0";
+                Err(OptionsError::OutOfRange { name, value: value.to_string(), allowed })
+            }
+        };
+        match request {
+            Request::Count(0) => {
+                Err(OptionsError::OutOfRange { name: "count", value: "0".into(), allowed: "1 or more" })
+            }
+            Request::Count(n) => self.exactly(n),
+            Request::Density(density) => self.at_spacing(libm::sqrt(positive("density", density)?.recip())),
+            Request::Spacing(spacing) => self.at_spacing(positive("spacing", spacing)?),
+            Request::Irregularity(most) => self.at_spacing(self.spacing_for(positive("irregularity", most)?)),
+        }
+    }
+
+    /// How many points of the domain give `n` on the surface where it is covered once.
+    fn domain_count(&self, n: f64) -> Result<u32, OptionsError> {
+        let wanted = (n * self.domain.room(self.mesh.area())).round().max(1.0);
+        if wanted > f64::from(MOST_DOMAIN_POINTS) {
+            return Err(OptionsError::TooMany { wanted });
+        }
+        Ok(wanted as u32)
+    }
+
+    fn scatter(&self, count: u32, d_m: f64) -> (Vec<Corrected>, Correction) {
+        let points = DomainPoints::scatter(self.domain, &self.sequence, count, self.shift);
+        let wrapping = wrap(self.strips, self.domain, &points);
+        correct(self.mesh, self.strips, self.domain, &points, wrapping, self.tolerance * d_m)
+    }
+
+    fn at_spacing(&self, d_m: f64) -> Result<Scattered, OptionsError> {
+        let count = self.domain_count(self.mesh.area() / (d_m * d_m))?;
+        let (corrected, correction) = self.scatter(count, d_m);
+        Ok(Scattered { samples: corrected.into_iter().map(|c| c.sample).collect(), correction, d_m })
+    }
+
+    /// The largest spacing whose irregularity is at most `most`, to a thousandth.
+    fn spacing_for(&self, most: f64) -> f64 {
+        let holds = |d: f64| irregularity::bound(self.strips, d, self.tolerance * d) <= most;
+        let mut high = libm::sqrt(self.mesh.area());
+        if holds(high) {
+            return high;
+        }
+        // Eq. 8 falls to 0 with d_m, so halving ends.
+        let mut low = 0.5 * high;
+        while !holds(low) && low > 0.0 {
+            high = low;
+            low *= 0.5;
+        }
+        while high - low > 1e-3 * low {
+            let middle = 0.5 * (low + high);
+            if holds(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// Exactly `n` points. The number caught jumps a little as points of the domain are added, so a few numbers are
+    /// tried; where none gives `n`, the surplus of the best is left out, evenly along the sequence.
+    fn exactly(&self, n: usize) -> Result<Scattered, OptionsError> {
+        let d_m = libm::sqrt(self.mesh.area() / n as f64);
+        let nominal = self.domain_count(n as f64)?;
+        // A trial costs about the faces and the points; many are cheap when both are few.
+        let cost = self.mesh.face_count() / 4 + nominal as usize;
+        let trials = (2_000_000 / cost.max(1)).clamp(2, 24);
+        let mut best: Option<(Vec<Corrected>, Correction)> = None;
+        let mut tried = Vec::new();
+        let mut count = nominal;
+        loop {
+            tried.push(count);
+            let (corrected, correction) = self.scatter(count, d_m);
+            let found = corrected.len();
+            let better = best.as_ref().is_none_or(|(b, _)| found < b.len());
+            if found >= n && better {
+                best = Some((corrected, correction));
+            }
+            if found == n || (tried.len() >= trials && best.is_some()) {
+                break;
+            }
+            count = self.next_count(count, n, found, &tried)?;
+        }
+        let (corrected, mut correction) = best.unwrap_or_default();
+        let samples = thin_out(corrected, n);
+        correction.projected = samples.iter().filter(|s| s.origin == crate::sample::Origin::Projected).count();
+        Ok(Scattered { samples, correction, d_m })
+    }
+
+    /// The next number of domain points to try: by as many more as points are missing, and not one tried before.
+    fn next_count(&self, count: u32, n: usize, found: usize, tried: &[u32]) -> Result<u32, OptionsError> {
+        let room = self.domain.room(self.mesh.area()).max(1.0);
+        let step = (n as f64 - found as f64) * room;
+        let mut next = (f64::from(count) + step).round().max(1.0);
+        let direction = if found < n { 1.0 } else { -1.0 };
+        while tried.contains(&(next as u32)) {
+            next += direction;
+            if next < 1.0 {
+                next = f64::from(tried.iter().copied().max().unwrap_or(0)) + 1.0;
+            }
+        }
+        if next > f64::from(MOST_DOMAIN_POINTS) {
+            return Err(OptionsError::TooMany { wanted: next });
+        }
+        Ok(next as u32)
+    }
+}
+
+/// Leaves out points, evenly along the sequence, until `n` are left.
+fn thin_out(corrected: Vec<Corrected>, n: usize) -> Vec<Sample> {
+    let count = corrected.len();
+    let surplus = count.saturating_sub(n);
+    let mut left_out = (0..surplus).map(|k| ((2 * k + 1) * count) / (2 * surplus)).peekable();
+    corrected
+        .into_iter()
+        .enumerate()
+        .filter(|&(i, _)| left_out.next_if_eq(&i).is_none())
+        .map(|(_, c)| c.sample)
+        .collect()
+}
