@@ -115,8 +115,8 @@ pub(crate) struct SequenceArgs {
     /// Shift the set (Cranley-Patterson rotation), to repeat or replicate a run; 0 leaves it as it is
     #[arg(long, value_name = "S", default_value_t = 0)]
     pub(crate) seed: u64,
-    /// Interstices and overlaps thinner than this many mean distances are corrected
-    #[arg(long, value_name = "T", default_value_t = 0.1, value_parser = not_negative)]
+    /// Interstices and overlaps thinner than this many mean distances are corrected, 0 to 1
+    #[arg(long, value_name = "T", default_value_t = 0.1, value_parser = share)]
     pub(crate) tolerance: f64,
 }
 
@@ -201,6 +201,13 @@ pub(crate) struct StripsArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ShapeArgs {
+    /// The mesh to write
+    #[arg(short, long, value_name = "MESH")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
     #[command(flatten)]
     pub(crate) mesh: MeshArgs,
@@ -212,10 +219,6 @@ pub(crate) struct InfoArgs {
 /// A number above 0.
 fn positive(text: &str) -> Result<f64, String> {
     finite(text, |x| x > 0.0, "above 0")
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    finite(text, |x| x >= 0.0, "0 or above")
 }
 
 fn share(text: &str) -> Result<f64, String> {

@@ -122,16 +122,18 @@ impl Axis {
     }
 }
 
+fn has_logarithms((n, error): &(f64, f64)) -> bool {
+    let positive = |x: f64| x > 0.0 && x.is_finite();
+    positive(*n) && positive(*error)
+}
+
 fn draw(svg: &mut String, panel: &Panel) {
-    let shown: Vec<(usize, Vec<(f64, f64)>)> = panel
-        .lines
-        .iter()
-        .map(|line| line.points.iter().copied().filter(|&(n, e)| n > 0.0 && e > 0.0 && e.is_finite()).collect())
-        .enumerate()
-        .collect();
-    let all = || shown.iter().flat_map(|(_, points)| points);
+    let shown: Vec<Vec<(f64, f64)>> =
+        panel.lines.iter().map(|line| line.points.iter().copied().filter(has_logarithms).collect()).collect();
+    let anchor = panel.anchor.filter(has_logarithms);
+    let all = || shown.iter().flatten().copied().chain(anchor);
     let x = Axis::around(all().map(|p| p.0), LEFT, WIDTH - RIGHT);
-    let y = Axis::around(all().map(|p| p.1).chain(panel.anchor.map(|a| a.1)), HEIGHT - BOTTOM, TOP);
+    let y = Axis::around(all().map(|p| p.1), HEIGHT - BOTTOM, TOP);
     for tick in x.ticks() {
         let _ = writeln!(
             svg,
@@ -164,11 +166,11 @@ fn draw(svg: &mut String, panel: &Panel) {
         TOP - 8.0,
         escape(&panel.title)
     );
-    if let Some(anchor) = panel.anchor {
+    if let Some(anchor) = anchor {
         slopes(svg, anchor, &x, &y);
     }
-    for (i, points) in &shown {
-        let colour = colour(*i);
+    for (i, points) in shown.iter().enumerate() {
+        let colour = colour(i);
         let corners: Vec<String> = points.iter().map(|p| format!("{:.1},{:.1}", x.at(p.0), y.at(p.1))).collect();
         let _ = writeln!(
             svg,
@@ -180,7 +182,7 @@ fn draw(svg: &mut String, panel: &Panel) {
             let _ = writeln!(
                 svg,
                 "<circle cx=\"{cx}\" cy=\"{cy}\" r=\"3\" fill=\"{colour}\"><title>{}: {} at n = {}</title></circle>",
-                escape(&panel.lines[*i].name),
+                escape(&panel.lines[i].name),
                 p.1,
                 p.0
             );
