@@ -1,12 +1,14 @@
 //! Segmentation (paper, 4.1): which triangles form a segment, joined across which edges.
 
 mod growth;
+mod merge;
 mod seeds;
 mod skeleton;
 
 use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
 use growth::Growth;
+use merge::merge_small;
 use seeds::Seeds;
 use skeleton::skeleton;
 
@@ -29,10 +31,10 @@ pub enum GrowthOrder {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SegmentOptions {
     /// The largest angle between the normals of neighbours, in radians, that counts as almost flat. Larger gives
-    /// fewer, larger segments. Default: 40 degrees.
+    /// fewer, larger segments. Default: 60 degrees.
     pub flatness_angle: f64,
-    /// Segments with fewer triangles than this share of all go on growing whatever the angle (paper, 4.1 step 4).
-    /// Default: 0.002.
+    /// Segments with fewer triangles than this share of all go on growing whatever the angle (paper, 4.1 step 4), and
+    /// with [`GrowthOrder::FlattestFirst`] join a neighbour when they cannot grow. Default: 0.002.
     pub smallest_share: f64,
     /// In which order a segment grows. Default: flattest first, which measures best.
     pub order: GrowthOrder,
@@ -40,7 +42,7 @@ pub struct SegmentOptions {
 
 impl Default for SegmentOptions {
     fn default() -> Self {
-        Self { flatness_angle: 40.0_f64.to_radians(), smallest_share: 0.002, order: GrowthOrder::default() }
+        Self { flatness_angle: 60.0_f64.to_radians(), smallest_share: 0.002, order: GrowthOrder::default() }
     }
 }
 
@@ -104,6 +106,9 @@ pub fn segment(mesh: &SurfaceMesh, options: &SegmentOptions) -> Segmentation {
         let segment = growth.finish_segment();
         seeds.save_border(mesh, &growth, &segment);
         segments.push(segment);
+    }
+    if options.order == GrowthOrder::FlattestFirst {
+        segments = merge_small(mesh, segments, smallest);
     }
     Segmentation { segments }
 }

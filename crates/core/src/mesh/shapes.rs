@@ -1,1 +1,0 @@
-//! Shapes with known counts and areas, for tests, demos and the assets.
