@@ -2,8 +2,14 @@
 
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use std::str::FromStr;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use ldwrap::io::PointFormat;
+use ldwrap::shapes::Shape;
+
+use crate::methods::Method;
 
 /// Spreads low-discrepancy points over polygon meshes.
 ///
@@ -33,15 +39,19 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Make one of the built-in shapes
     Shape(ShapeArgs),
+    /// Tell how good points are, whoever made them
+    Measure(MeasureArgs),
+    /// Compare methods by all measures
+    Compare(CompareArgs),
 }
 
 /// Where the mesh comes from.
 #[derive(Debug, Args)]
 pub(crate) struct MeshArgs {
-    /// The mesh: a PLY, OBJ, STL, glTF or GLB file, or `-` for stdin
+    /// The mesh: a PLY, OBJ, STL, glTF, GLB or OFF file, or `-` for stdin
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
-    /// The format of the mesh [default: by the name's extension]; needed with `-`
+    /// The format of the mesh [default: told by its content, then by its name]
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) mesh_format: Option<MeshFormatArg>,
     /// Leave components that are wound inward as they are, instead of turning them outward
@@ -54,8 +64,9 @@ pub(crate) enum MeshFormatArg {
     Ply,
     Obj,
     Stl,
+    /// As JSON or binary (GLB)
     Gltf,
-    Glb,
+    Off,
 }
 
 /// How many points; at most one of these.
@@ -158,8 +169,8 @@ pub(crate) struct WrapOutputArgs {
     #[arg(short, long, value_name = "POINTS")]
     pub(crate) output: Option<PathBuf>,
     /// The format of the points [default: by the name's extension]
-    #[arg(long, value_enum, value_name = "FORMAT", requires = "output")]
-    pub(crate) format: Option<PointFormatArg>,
+    #[arg(long, value_name = "FORMAT", requires = "output", value_parser = point_formats())]
+    pub(crate) format: Option<PointFormat>,
     /// Draw the strips in the plane with their points, as SVG
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) strips: Option<PathBuf>,
@@ -169,24 +180,9 @@ pub(crate) struct WrapOutputArgs {
     /// Draw the mesh in the colours of its strips with its visible points, as PNG
     #[arg(long, value_name = "FILE.png")]
     pub(crate) preview: Option<PathBuf>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PointFormatArg {
-    /// PLY, binary
-    Ply,
-    /// PLY, as text
-    PlyAscii,
-    /// One line a point: x y z
-    Xyz,
-    /// Comma-separated with a header
-    Csv,
-    /// NumPy array
-    Npy,
-    /// JSON
-    Json,
-    /// OBJ vertices
-    Obj,
+    /// Measure the points too, as `measure` does, and add that to the report
+    #[arg(long, requires = "report")]
+    pub(crate) quality: bool,
 }
 
 #[derive(Debug, Args)]
@@ -202,9 +198,103 @@ pub(crate) struct StripsArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ShapeArgs {
-    /// The mesh to write
+    /// The shape
+    #[arg(value_name = "NAME", value_parser = shapes())]
+    pub(crate) shape: Shape,
+    /// Make about this many triangles [default: the paper's, or what shows well]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Shape::MOST_FACES)))]
+    pub(crate) faces: Option<u32>,
+    /// The mesh to write: .ply, .obj, .stl or .off, or `-` for stdout with --format
     #[arg(short, long, value_name = "MESH")]
     pub(crate) output: PathBuf,
+    /// The format of the mesh [default: by the name's extension]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<ShapeFormat>,
+}
+
+/// A format that meshes are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ShapeFormat {
+    Ply,
+    Obj,
+    Stl,
+    Off,
+}
+
+impl ShapeFormat {
+    /// The extension of its files.
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Stl => "stl",
+            Self::Off => "off",
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MeasureArgs {
+    #[command(flatten)]
+    pub(crate) mesh: MeshArgs,
+    /// The points: a PLY, XYZ, CSV, NPY, JSON or OBJ file from any tool, or `-` for stdin
+    #[arg(value_name = "POINTS")]
+    pub(crate) points: PathBuf,
+    /// The format of the points [default: told by their content, then by the name]
+    #[arg(long, value_name = "FORMAT", value_parser = point_formats())]
+    pub(crate) points_format: Option<PointFormat>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    #[command(flatten)]
+    pub(crate) mesh: MeshArgs,
+    /// How many points, one table row a method for each
+    #[arg(short = 'n', long = "count", value_name = "N,...", value_delimiter = ',', default_value = "56,335,1000",
+        value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) counts: Vec<u32>,
+    /// The methods [default: all that work on the mesh]
+    #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) methods: Option<Vec<Method>>,
+    /// How many seeds, from --seed on; more than one give the spread
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) seeds: u32,
+    /// Compare with points from a file of another tool; may be given several times
+    #[arg(long, value_name = "NAME=FILE")]
+    pub(crate) points: Vec<PointsOf>,
+    #[command(flatten)]
+    pub(crate) sequence: SequenceArgs,
+    #[command(flatten)]
+    pub(crate) segment: SegmentArgs,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Draw the errors against the number of points, as SVG
+    #[arg(long, value_name = "OUT.svg")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// A point file and what it is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PointsOf {
+    pub(crate) name: String,
+    pub(crate) path: PathBuf,
+}
+
+impl FromStr for PointsOf {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((name, path)) if !name.is_empty() && !path.is_empty() => {
+                Ok(Self { name: name.to_owned(), path: path.into() })
+            }
+            _ => Err("must be NAME=FILE".to_owned()),
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -214,6 +304,15 @@ pub(crate) struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+fn point_formats() -> impl TypedValueParser<Value = PointFormat> {
+    PossibleValuesParser::new(PointFormat::ALL.map(PointFormat::name))
+        .try_map(|name| PointFormat::from_name(&name).ok_or("no such format"))
+}
+
+fn shapes() -> impl TypedValueParser<Value = Shape> {
+    PossibleValuesParser::new(Shape::ALL.map(Shape::name)).try_map(|name| name.parse::<Shape>())
 }
 
 /// A number above 0.

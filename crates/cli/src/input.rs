@@ -1,15 +1,14 @@
 //! The mesh that is worked on: from a file or stdin to a checked surface.
 
 use std::fs;
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
+use std::io::{Read, stdin as standard_input};
+use std::path::{Component, Path};
 
 use anyhow::{Context, anyhow};
-use ldwrap::io as formats;
-use ldwrap::{CheckOptions, Progress, RepairReport, SurfaceMesh};
+use ldwrap::io::{self, ReadError, Resolver, read_mesh};
+use ldwrap::{CheckOptions, PolygonSoup, Progress, RepairReport, SurfaceMesh};
 
 use crate::args::{MeshArgs, MeshFormatArg};
-use crate::exit::{Failure, Outcome};
 
 /// A checked mesh and what had to be done to it.
 pub(crate) struct Input {
@@ -20,34 +19,48 @@ pub(crate) struct Input {
 }
 
 /// Reads and checks a mesh; `progress` hears the stages `read` and `check`.
-pub(crate) fn read(args: &MeshArgs, progress: &dyn Progress) -> Outcome<Input> {
+pub(crate) fn read(args: &MeshArgs, progress: &dyn Progress) -> anyhow::Result<Input> {
     let stdin = args.mesh.as_os_str() == "-";
-    if stdin && args.mesh_format.is_none() {
-        return Err(Failure::wrong_use(
-            "a mesh from stdin needs its format: add --mesh-format ply, obj, stl, gltf or glb",
-        ));
-    }
     let name = if stdin { "stdin".to_owned() } else { args.mesh.display().to_string() };
-    progress.begin("read", 0);
+    progress.begin("read", 1);
     let bytes = bytes(&args.mesh, stdin).with_context(|| name.clone())?;
-    let format_name = match args.mesh_format {
-        Some(format) => format!("{name}.{}", extension(format)),
-        None => name.clone(),
+    let folder = if stdin { None } else { args.mesh.parent() };
+    let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
+    let soup = match args.mesh_format {
+        Some(format) => read_as(format, &bytes, &resolver),
+        None => read_mesh(&bytes, Some(&name), &resolver),
     };
-    let folder = if stdin { PathBuf::from(".") } else { args.mesh.parent().unwrap_or(Path::new("")).to_path_buf() };
-    let resolver = |file: &str| fs::read(folder.join(file)).map_err(|error| error.to_string());
-    let soup = formats::read_mesh(&bytes, &format_name, &resolver).with_context(|| name.clone())?;
+    let soup = soup.with_context(|| name.clone())?;
     drop(bytes);
-    progress.begin("check", 0);
+    progress.begin("check", 1);
     let options = CheckOptions { turn_outward: !args.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
     Ok(Input { name, mesh, repaired })
 }
 
+fn read_as(format: MeshFormatArg, bytes: &[u8], resolver: &Resolver<'_>) -> Result<PolygonSoup, ReadError> {
+    match format {
+        MeshFormatArg::Ply => io::ply::read(bytes),
+        MeshFormatArg::Obj => io::obj::read(bytes),
+        MeshFormatArg::Stl => io::stl::read(bytes),
+        MeshFormatArg::Gltf => io::gltf::read(bytes, resolver),
+        MeshFormatArg::Off => io::off::read(bytes),
+    }
+}
+
+/// A file that a mesh names: only one in the mesh's own folder or below it, whatever the mesh says.
+fn beside(folder: &Path, file: &str) -> Result<Vec<u8>, String> {
+    let inside = Path::new(file).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    if !inside {
+        return Err("it lies outside the mesh's folder".to_owned());
+    }
+    fs::read(folder.join(file)).map_err(|error| format!("it cannot be read ({error})"))
+}
+
 fn bytes(path: &Path, stdin: bool) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     if stdin {
-        io::stdin().lock().read_to_end(&mut bytes).context("cannot be read")?;
+        standard_input().lock().read_to_end(&mut bytes).context("cannot be read")?;
     } else {
         let found = fs::metadata(path).context("cannot be opened")?;
         if found.is_dir() {
@@ -59,16 +72,6 @@ fn bytes(path: &Path, stdin: bool) -> anyhow::Result<Vec<u8>> {
         return Err(anyhow!("is empty: there is no mesh in it"));
     }
     Ok(bytes)
-}
-
-fn extension(format: MeshFormatArg) -> &'static str {
-    match format {
-        MeshFormatArg::Ply => "ply",
-        MeshFormatArg::Obj => "obj",
-        MeshFormatArg::Stl => "stl",
-        MeshFormatArg::Gltf => "gltf",
-        MeshFormatArg::Glb => "glb",
-    }
 }
 
 /// What checking did, one line for each kind of repair.

@@ -3,12 +3,13 @@
 use std::path::Path;
 
 use ldwrap::equalize::EqualizeOptions;
+use ldwrap::io::PointFormat;
 use ldwrap::pipeline::{Options, Request};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::sequence::Sequence;
 
 use crate::args::{
-    GrowthArg, PointFormatArg, RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs,
+    GrowthArg, RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs,
 };
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
@@ -17,7 +18,7 @@ use crate::output::{Destination, Targets};
 #[derive(Clone, Debug)]
 pub(crate) struct PointOutput {
     pub(crate) destination: Destination,
-    pub(crate) format: PointFormatArg,
+    pub(crate) format: PointFormat,
 }
 
 /// Where the results of `wrap` go.
@@ -27,6 +28,8 @@ pub(crate) struct WrapOutputs {
     pub(crate) strips: Option<Destination>,
     pub(crate) report: Option<Destination>,
     pub(crate) preview: Option<Destination>,
+    /// Whether the report says how good the points are.
+    pub(crate) quality: bool,
 }
 
 impl WrapOutputs {
@@ -39,13 +42,14 @@ impl WrapOutputs {
             strips: args.strips.as_deref().map(|path| targets.add("--strips", path)),
             report: args.report.as_deref().map(|path| targets.add("--report", path)),
             preview: args.preview.as_deref().map(|path| targets.add("--preview", path)),
+            quality: args.quality,
         };
         targets.check(Some(input))?;
         Ok(outputs)
     }
 }
 
-fn point_output(path: &Path, format: Option<PointFormatArg>, targets: &mut Targets) -> Outcome<PointOutput> {
+fn point_output(path: &Path, format: Option<PointFormat>, targets: &mut Targets) -> Outcome<PointOutput> {
     let destination = targets.add("--output", path);
     let format = match (format, &destination) {
         (Some(format), _) => format,
@@ -59,34 +63,37 @@ fn point_output(path: &Path, format: Option<PointFormatArg>, targets: &mut Targe
     Ok(PointOutput { destination, format })
 }
 
-/// The format that a file's extension stands for.
-pub(crate) fn point_format(path: &Path) -> Outcome<PointFormatArg> {
-    const KNOWN: &str = "known are .ply, .xyz, .csv, .npy, .json and .obj; or choose one with --format";
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    match extension.as_deref() {
-        Some("ply") => Ok(PointFormatArg::Ply),
-        Some("xyz") => Ok(PointFormatArg::Xyz),
-        Some("csv") => Ok(PointFormatArg::Csv),
-        Some("npy") => Ok(PointFormatArg::Npy),
-        Some("json") => Ok(PointFormatArg::Json),
-        Some("obj") => Ok(PointFormatArg::Obj),
-        Some(other) => {
-            Err(Failure::wrong_use(format!("{}: no point format has the extension .{other}: {KNOWN}", path.display())))
-        }
-        None => Err(Failure::wrong_use(format!("{}: a point file needs an extension: {KNOWN}", path.display()))),
-    }
+/// The format that a file's name stands for.
+fn point_format(path: &Path) -> Outcome<PointFormat> {
+    let extension = path.extension().map(|extension| extension.to_string_lossy());
+    extension.as_deref().and_then(PointFormat::from_name).ok_or_else(|| {
+        let what = extension.as_deref().map_or("no extension".to_owned(), |e| format!("the extension .{e}"));
+        Failure::wrong_use(format!(
+            "{}: no point format has {what}: known are .ply, .xyz, .csv, .npy, .json and .obj; or choose one with \
+             --format",
+            path.display()
+        ))
+    })
 }
 
 /// Everything that decides the points.
 pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
-    let (sequence, seed) = sequence(&args.sequence)?;
     Ok(Options {
         request: request(&args.request),
-        segment: segment_options(&args.segment),
+        equalize: (!args.no_equalize).then(EqualizeOptions::default),
+        ..wrap_options(&args.segment, &args.sequence)?
+    })
+}
+
+/// How points are wrapped, whatever their number.
+pub(crate) fn wrap_options(segment: &SegmentArgs, points: &SequenceArgs) -> Outcome<Options> {
+    let (sequence, seed) = sequence(points)?;
+    Ok(Options {
+        segment: segment_options(segment),
         sequence,
         seed,
-        tolerance: args.sequence.tolerance,
-        equalize: (!args.no_equalize).then(EqualizeOptions::default),
+        tolerance: points.tolerance,
+        ..Options::default()
     })
 }
 

@@ -5,11 +5,14 @@ mod commands;
 mod exit;
 mod input;
 mod job;
+mod methods;
 mod output;
 mod picture;
 mod points;
 mod progress;
+mod quality;
 mod report;
+mod table;
 
 use std::num::NonZeroUsize;
 use std::process::ExitCode;
@@ -36,6 +39,8 @@ fn run(line: &CommandLine) -> Outcome {
         Command::Strips(args) => commands::strips::run(args, line.quiet),
         Command::Info(args) => commands::info::run(args, line.quiet),
         Command::Shape(args) => commands::shape::run(args, line.quiet),
+        Command::Measure(args) => commands::measure::run(args, line.quiet),
+        Command::Compare(args) => commands::compare::run(args, line.quiet),
     }
 }
 

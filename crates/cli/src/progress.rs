@@ -51,6 +51,13 @@ impl Stages {
         }
     }
 
+    /// What the bar shows before the name of the stage.
+    pub(crate) fn prefix(&self, prefix: &str) {
+        if let Some(bar) = &self.bar {
+            bar.set_prefix(prefix.to_owned());
+        }
+    }
+
     /// The seconds of every stage so far; the one that is running ends now and its bar goes away.
     pub(crate) fn finish(&self) -> Seconds {
         if let Some(bar) = &self.bar {
@@ -109,6 +116,6 @@ impl Serialize for Seconds {
 }
 
 fn style() -> ProgressStyle {
-    ProgressStyle::with_template("{spinner} {msg:<16} {wide_bar} {percent:>3}% {elapsed}")
+    ProgressStyle::with_template("{spinner} {prefix}{msg:<16} {wide_bar} {percent:>3}% {elapsed}")
         .unwrap_or_else(|_| ProgressStyle::default_bar())
 }

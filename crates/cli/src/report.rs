@@ -10,6 +10,7 @@ use ldwrap::{RepairReport, SurfaceMesh};
 use serde::Serialize;
 
 use crate::progress::Seconds;
+use crate::quality::Quality;
 
 /// What `wrap --report` writes.
 #[derive(Serialize)]
@@ -22,6 +23,8 @@ pub(crate) struct Report<'a> {
     irregularity: Irregularity,
     #[serde(skip_serializing_if = "Option::is_none")]
     equalize: Option<EqualizeReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    quality: Option<Quality>,
     seconds: Seconds,
 }
 
@@ -65,8 +68,14 @@ struct PointsReport {
 }
 
 impl<'a> Report<'a> {
-    /// Puts together what `run` did with `options` in `seconds`.
-    pub(crate) fn new(mesh: MeshReport<'a>, options: &Options, run: &Run, seconds: Seconds) -> Self {
+    /// Puts together what `run` did with `options` in `seconds`, and how good its points are if that was asked for.
+    pub(crate) fn new(
+        mesh: MeshReport<'a>,
+        options: &Options,
+        run: &Run,
+        quality: Option<Quality>,
+        seconds: Seconds,
+    ) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),
             options: OptionsReport {
@@ -89,6 +98,7 @@ impl<'a> Report<'a> {
             },
             irregularity: run.irregularity,
             equalize: run.equalize,
+            quality,
             seconds,
         }
     }

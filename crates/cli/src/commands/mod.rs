@@ -1,6 +1,8 @@
 //! One file a command: from its arguments to its outputs.
 
+pub(crate) mod compare;
 pub(crate) mod info;
+pub(crate) mod measure;
 pub(crate) mod shape;
 pub(crate) mod strips;
 pub(crate) mod wrap;

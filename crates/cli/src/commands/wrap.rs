@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use ldwrap::Progress;
 use ldwrap::correct::Correction;
 use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{self, Options, Run};
+use ldwrap::{Progress, SurfacePoint};
 
 use crate::args::WrapArgs;
 use crate::commands::counted;
@@ -17,6 +17,7 @@ use crate::output::Outputs;
 use crate::picture::{PreviewOptions, preview_png, strips_svg};
 use crate::points;
 use crate::progress::Stages;
+use crate::quality::Judge;
 use crate::report::{self, MeshReport, Report};
 
 /// Runs the command.
@@ -62,9 +63,13 @@ fn write(
         stages.begin("write", 0);
         outputs.stage(&wanted.destination, points::bytes(mesh, &run.samples, wanted.format)?)?;
     }
+    let quality = wanted.quality.then(|| {
+        let points: Vec<SurfacePoint> = run.samples.iter().map(|sample| sample.point).collect();
+        Judge::new(mesh, points.len(), stages).quality(&points, stages)
+    });
     let seconds = stages.finish();
     if let Some(destination) = &wanted.report {
-        let report = Report::new(MeshReport::new(mesh, repaired), options, run, seconds);
+        let report = Report::new(MeshReport::new(mesh, repaired), options, run, quality, seconds);
         outputs.stage(destination, report::json(&report)?)?;
     }
     outputs.commit()

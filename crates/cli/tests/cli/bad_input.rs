@@ -36,14 +36,49 @@ fn an_empty_file() {
 
 #[test]
 fn an_unknown_format() {
-    rejected("a.docx", OCTAHEDRON, &["docx"]);
+    rejected("a.docx", "PK\x03\x04 a letter", &["known format", "PLY"]);
 }
 
 #[test]
-fn another_format_than_the_name_says() {
-    rejected("a.ply", OCTAHEDRON, &[]);
-    rejected("a.glb", OCTAHEDRON, &[]);
-    rejected("a.gltf", OCTAHEDRON, &[]);
+fn another_format_than_it_is_said_to_be() {
+    let folder = Folder::with_octahedron();
+    for format in ["ply", "stl", "gltf", "off"] {
+        folder.run(&format!("wrap octahedron.obj --mesh-format {format}")).failed(&["octahedron.obj"]);
+    }
+    folder.run("wrap octahedron.obj --mesh-format nonsense").refused(&["--mesh-format"]);
+}
+
+#[test]
+fn the_content_counts_more_than_the_name() {
+    let folder = Folder::new();
+    folder.write("a.ply", OCTAHEDRON);
+    folder.run("info a.ply").ok();
+}
+
+#[test]
+fn a_buffer_outside_the_folder_is_not_read() {
+    let gltf = |uri: &str| {
+        format!(
+            r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"byteLength": 36, "uri": "{uri}"}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+            "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 1, 0]}}],
+            "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+            "nodes": [{{"mesh": 0}}], "scenes": [{{"nodes": [0]}}], "scene": 0}}"#
+        )
+    };
+    let corners = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let bytes: Vec<u8> = corners.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("sub")).expect("a folder");
+    folder.write("out.bin", &bytes);
+    folder.write("sub/in.bin", &bytes);
+    folder.write("good.gltf", gltf("sub/in.bin"));
+    assert_eq!(folder.run("info good.gltf --json").ok().json()["faces"], 1);
+    folder.write("missing.gltf", gltf("sub/none.bin"));
+    folder.run("info missing.gltf").failed(&["missing.gltf", "sub/none.bin"]);
+    folder.write("sub/bad.gltf", gltf("../out.bin"));
+    folder.run("info sub/bad.gltf").failed(&["sub/bad.gltf", "../out.bin", "outside"]);
 }
 
 #[test]

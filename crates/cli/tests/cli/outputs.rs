@@ -58,10 +58,13 @@ fn a_report_to_stdout() {
 #[test]
 fn a_mesh_from_stdin() {
     let folder = Folder::with_octahedron();
-    let piped = folder.run_with_input("wrap - --mesh-format obj -n 25 -o - --format csv", OCTAHEDRON).ok();
     let read = folder.run("wrap octahedron.obj -n 25 -o - --format csv").ok();
-    assert_eq!(piped.stdout, read.stdout);
-    assert!(piped.stderr.contains("stdin"), "{}", piped.stderr);
+    for format in ["", "--mesh-format obj"] {
+        let piped = folder.run_with_input(&format!("wrap - {format} -n 25 -o - --format csv"), OCTAHEDRON).ok();
+        assert_eq!(piped.stdout, read.stdout);
+        assert!(piped.stderr.contains("stdin"), "{}", piped.stderr);
+    }
+    folder.run_with_input("info -", "").failed(&["stdin", "empty"]);
 }
 
 #[test]

@@ -92,12 +92,6 @@ fn the_input_is_never_overwritten() {
 }
 
 #[test]
-fn a_mesh_on_stdin_needs_a_format() {
-    let folder = Folder::new();
-    folder.run_with_input("wrap -", crate::common::OCTAHEDRON).refused(&["stdin", "--mesh-format"]);
-}
-
-#[test]
 fn unknown_commands_and_options_are_refused() {
     let folder = Folder::with_octahedron();
     folder.run("wrapp octahedron.obj").refused(&["wrap"]);
