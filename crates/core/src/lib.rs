@@ -18,6 +18,7 @@ mod request;
 mod sample;
 pub mod segment;
 pub mod sequence;
+pub mod spatial;
 pub mod unfold;
 pub mod wrap;
 
