@@ -27,10 +27,8 @@ impl Failure {
         // Nothing is left to be done when even stderr is closed.
         match self {
             Self::WrongUse(message) => {
-                let _ = writeln!(
-                    std::io::stderr(),
-                    "error: {message}\n\nFor more information, try '--help'."
-                );
+                let _ =
+                    writeln!(std::io::stderr(), "error: {message}\n\nFor more information, try '--help'.");
                 ExitCode::from(2)
             }
             Self::Failed(error) => {

@@ -78,16 +78,48 @@ fn bytes(path: &Path, stdin: bool) -> anyhow::Result<Vec<u8>> {
 pub(crate) fn notes(repaired: &RepairReport) -> Vec<String> {
     let r = repaired;
     let notes = [
-        (r.welded_vertices, "vertex welded to another at the same position", "vertices welded to others at the same position"),
+        (
+            r.welded_vertices,
+            "vertex welded to another at the same position",
+            "vertices welded to others at the same position",
+        ),
         (r.isolated_vertices, "vertex left out: no face uses it", "vertices left out: no face uses them"),
-        (r.degenerate_polygons, "polygon left out: fewer than three different corners", "polygons left out: fewer than three different corners"),
-        (r.polygons_triangulated, "polygon with more than three corners cut into triangles", "polygons with more than three corners cut into triangles"),
-        (r.fanned_polygons, "of these cut as a fan: it crosses itself or has no area", "of these cut as fans: they cross themselves or have no area"),
+        (
+            r.degenerate_polygons,
+            "polygon left out: fewer than three different corners",
+            "polygons left out: fewer than three different corners",
+        ),
+        (
+            r.polygons_triangulated,
+            "polygon with more than three corners cut into triangles",
+            "polygons with more than three corners cut into triangles",
+        ),
+        (
+            r.fanned_polygons,
+            "of these cut as a fan: it crosses itself or has no area",
+            "of these cut as fans: they cross themselves or have no area",
+        ),
         (r.zero_area_faces, "triangle left out: its area is zero", "triangles left out: their area is zero"),
-        (r.duplicate_faces, "triangle left out: another has the same corners", "triangles left out: others have the same corners"),
-        (r.non_manifold_edges, "edge of more than two triangles made a border", "edges of more than two triangles made borders"),
-        (r.inconsistent_edges, "edge between triangles wound against each other made a border", "edges between triangles wound against each other made borders"),
-        (r.turned_components, "closed component was wound inward and is turned outward", "closed components were wound inward and are turned outward"),
+        (
+            r.duplicate_faces,
+            "triangle left out: another has the same corners",
+            "triangles left out: others have the same corners",
+        ),
+        (
+            r.non_manifold_edges,
+            "edge of more than two triangles made a border",
+            "edges of more than two triangles made borders",
+        ),
+        (
+            r.inconsistent_edges,
+            "edge between triangles wound against each other made a border",
+            "edges between triangles wound against each other made borders",
+        ),
+        (
+            r.turned_components,
+            "closed component was wound inward and is turned outward",
+            "closed components were wound inward and are turned outward",
+        ),
     ];
     notes
         .into_iter()

@@ -8,9 +8,7 @@ use ldwrap::pipeline::{Options, Request};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::sequence::Sequence;
 
-use crate::args::{
-    GrowthArg, RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs,
-};
+use crate::args::{GrowthArg, RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs};
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
 

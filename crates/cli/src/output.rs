@@ -92,7 +92,9 @@ fn same(a: &Destination, b: &Destination) -> bool {
 /// Whether two paths name one file, whether or not it exists yet. Devices may be named twice.
 fn same_file(a: &Path, b: &Path) -> bool {
     let full = |path: &Path| {
-        fs::canonicalize(path).ok().or_else(|| Some(fs::canonicalize(folder(path)).ok()?.join(path.file_name()?)))
+        fs::canonicalize(path)
+            .ok()
+            .or_else(|| Some(fs::canonicalize(folder(path)).ok()?.join(path.file_name()?)))
     };
     if fs::metadata(a).is_ok_and(|m| !m.is_file()) {
         return false;
@@ -125,10 +127,8 @@ fn check_file(path: &Path) -> anyhow::Result<()> {
     match fs::metadata(folder) {
         Ok(found) if found.is_dir() => Ok(()),
         Ok(_) => Err(anyhow!("{name}: cannot be written: {} is not a folder", folder.display())),
-        Err(error) => Err(anyhow!(error).context(format!(
-            "{name}: cannot be written: no folder {}; create it first",
-            folder.display()
-        ))),
+        Err(error) => Err(anyhow!(error)
+            .context(format!("{name}: cannot be written: no folder {}; create it first", folder.display()))),
     }
 }
 
@@ -171,8 +171,7 @@ impl Outputs {
         write_stdout(&self.stdout)?;
         let mut names = Vec::new();
         for (name, bytes) in self.direct {
-            let mut device =
-                fs::OpenOptions::new().write(true).open(&name).with_context(|| failed(&name))?;
+            let mut device = fs::OpenOptions::new().write(true).open(&name).with_context(|| failed(&name))?;
             device.write_all(&bytes).with_context(|| failed(&name))?;
             names.push(name);
         }

@@ -89,7 +89,12 @@ impl<'a> Report<'a> {
                 equalize: options.equalize.is_some(),
             },
             mesh,
-            strips: run.strips.strips.iter().map(|strip| strip_report(strip, options.tolerance * run.d_m)).collect(),
+            strips: run
+                .strips
+                .strips
+                .iter()
+                .map(|strip| strip_report(strip, options.tolerance * run.d_m))
+                .collect(),
             points: PointsReport {
                 count: run.samples.len(),
                 d_m: run.d_m,

@@ -87,12 +87,14 @@ pub(crate) fn text(rows: &[Row]) -> String {
         cells
     });
     let lines: Vec<Vec<String>> = std::iter::once(head).chain(body).collect();
-    let widths: Vec<usize> =
-        (0..lines[0].len()).map(|c| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0)).collect();
+    let widths: Vec<usize> = (0..lines[0].len())
+        .map(|c| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0))
+        .collect();
     let mut text = String::new();
     for (i, line) in lines.iter().enumerate() {
         for (c, (cell, width)) in line.iter().zip(&widths).enumerate() {
-            let _ = if c == 1 { write!(text, "| {cell:<width$} ") } else { write!(text, "| {cell:>width$} ") };
+            let _ =
+                if c == 1 { write!(text, "| {cell:<width$} ") } else { write!(text, "| {cell:>width$} ") };
         }
         text.push_str("|\n");
         if i == 0 {

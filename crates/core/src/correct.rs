@@ -48,7 +48,8 @@ pub fn correct(
 ) -> (Vec<Corrected>, Correction) {
     let mends = parallel::map(strips.strips.len(), |s| {
         let strip = &strips.strips[s];
-        let seams = Seams { mesh, strip, offset: domain.offsets[s], points, caught: &wrapping.strips[s], tolerance };
+        let seams =
+            Seams { mesh, strip, offset: domain.offsets[s], points, caught: &wrapping.strips[s], tolerance };
         seams.mend()
     });
     let mut correction = Correction::default();
@@ -110,7 +111,9 @@ impl Seams<'_> {
         for edge in &self.strip.border {
             let Twin::SameStrip { from, to } = edge.twin else { continue };
             // Each cut edge lies in the border twice: once is enough.
-            let Some(twin) = self.mesh.topology().twin(edge.halfedge).filter(|t| edge.halfedge < *t) else { continue };
+            let Some(twin) = self.mesh.topology().twin(edge.halfedge).filter(|t| edge.halfedge < *t) else {
+                continue;
+            };
             if self.strip.gap(edge) > self.tolerance {
                 continue;
             }

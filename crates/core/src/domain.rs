@@ -25,9 +25,8 @@ impl PlanarDomain {
         const PLACES: Sequence = Sequence::Halton { bases: [2, 3] };
         let side = strips.strips.iter().fold(0.0_f64, |m, s| m.max(s.extent.max_element()));
         let count = strips.strips.len() as u64;
-        let offsets = (0..).zip(&strips.strips).map(|(k, s)| {
-            PLACES.point(k, count) * (DVec2::splat(side) - s.extent)
-        });
+        let offsets =
+            (0..).zip(&strips.strips).map(|(k, s)| PLACES.point(k, count) * (DVec2::splat(side) - s.extent));
         Self { side, offsets: offsets.collect() }
     }
 
@@ -59,8 +58,13 @@ impl DomainPoints {
                 .collect::<Vec<_>>()
         })
         .concat();
-        let mut points =
-            Self { places: Vec::new(), indices: Vec::new(), starts: vec![0; cells * cells + 1], cells, cell_side };
+        let mut points = Self {
+            places: Vec::new(),
+            indices: Vec::new(),
+            starts: vec![0; cells * cells + 1],
+            cells,
+            cell_side,
+        };
         for &p in &all {
             let cell = points.row(p.y) * cells + points.row(p.x);
             points.starts[cell + 1] += 1;
@@ -129,11 +133,10 @@ impl DomainPoints {
                 if p.y > top || q.y < bottom {
                     continue;
                 }
-                let x_at = |y: f64| if q.y > p.y { p.x + (q.x - p.x) * ((y - p.y) / (q.y - p.y)) } else { p.x };
-                let (x, z) = (
-                    if p.y < bottom { x_at(bottom) } else { p.x },
-                    if q.y > top { x_at(top) } else { q.x },
-                );
+                let x_at =
+                    |y: f64| if q.y > p.y { p.x + (q.x - p.x) * ((y - p.y) / (q.y - p.y)) } else { p.x };
+                let (x, z) =
+                    (if p.y < bottom { x_at(bottom) } else { p.x }, if q.y > top { x_at(top) } else { q.x });
                 left = left.min(x).min(z);
                 right = right.max(x).max(z);
             }

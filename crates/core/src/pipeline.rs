@@ -83,7 +83,9 @@ pub enum OptionsError {
     #[error(transparent)]
     Sequence(#[from] SequenceError),
     /// More points of the planar domain would be needed than can be numbered.
-    #[error("{wanted:.3e} points of the planar domain are needed, at most {MOST_DOMAIN_POINTS} can be: ask for fewer points")]
+    #[error(
+        "{wanted:.3e} points of the planar domain are needed, at most {MOST_DOMAIN_POINTS} can be: ask for fewer points"
+    )]
     TooMany {
         /// How many.
         wanted: f64,
@@ -131,7 +133,17 @@ fn check(options: &Options) -> Result<(), OptionsError> {
     };
     let SegmentOptions { flatness_angle, smallest_share, order: _ } = options.segment;
     let half_turn = std::f64::consts::PI;
-    finite("flatness angle", flatness_angle, (0.0..=half_turn).contains(&flatness_angle), "from 0 to pi radians")?;
+    finite(
+        "flatness angle",
+        flatness_angle,
+        (0.0..=half_turn).contains(&flatness_angle),
+        "from 0 to pi radians",
+    )?;
     finite("smallest share", smallest_share, (0.0..=1.0).contains(&smallest_share), "from 0 to 1")?;
-    finite("tolerance", options.tolerance, (0.0..=1.0).contains(&options.tolerance), "from 0 to 1 (in units of d_m)")
+    finite(
+        "tolerance",
+        options.tolerance,
+        (0.0..=1.0).contains(&options.tolerance),
+        "from 0 to 1 (in units of d_m)",
+    )
 }

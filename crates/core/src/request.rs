@@ -142,7 +142,8 @@ impl Scattering<'_> {
         }
         let (corrected, mut correction) = best.unwrap_or_default();
         let samples = thin_out(corrected, n);
-        correction.projected = samples.iter().filter(|s| s.origin == crate::sample::Origin::Projected).count();
+        correction.projected =
+            samples.iter().filter(|s| s.origin == crate::sample::Origin::Projected).count();
         Ok(Scattered { samples, correction, d_m })
     }
 

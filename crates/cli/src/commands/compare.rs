@@ -72,13 +72,21 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
     let mut outputs = Outputs::default();
     let printed = if args.json {
         let mesh = MeshReport::new(&mesh, &repaired);
-        report::json(&CompareReport { version: env!("CARGO_PKG_VERSION"), mesh, table: &rows, sets: &trials })?
+        report::json(&CompareReport {
+            version: env!("CARGO_PKG_VERSION"),
+            mesh,
+            table: &rows,
+            sets: &trials,
+        })?
     } else {
         table::text(&rows).into_bytes()
     };
     outputs.stage(&Destination::Stdout, printed)?;
     if let Some(destination) = &plot {
-        outputs.stage(destination, error_plot(&format!("Errors on {name}"), &panels(&rows, &trials)).into_bytes())?;
+        outputs.stage(
+            destination,
+            error_plot(&format!("Errors on {name}"), &panels(&rows, &trials)).into_bytes(),
+        )?;
     }
     for file in outputs.commit()? {
         stages.say(&format!("wrote {}", file.display()));
@@ -92,9 +100,10 @@ fn methods(args: &CompareArgs, mesh: &SurfaceMesh, name: &str) -> Outcome<Vec<Me
         return Ok(Method::ALL.into_iter().filter(|method| method.suits(mesh)).collect());
     };
     match asked.iter().find(|method| !method.suits(mesh)) {
-        Some(method) => {
-            Err(Failure::wrong_use(format!("--methods {}: {name} is not a sphere: leave it out", method.name())))
-        }
+        Some(method) => Err(Failure::wrong_use(format!(
+            "--methods {}: {name} is not a sphere: leave it out",
+            method.name()
+        ))),
         None => Ok(asked.clone()),
     }
 }
@@ -188,10 +197,17 @@ fn panels(rows: &[Row], trials: &[Trial]) -> Vec<Panel> {
         };
         let line = |&name: &&str| {
             let counts = rows.iter().filter(|row| row.method == name).map(|row| row.count);
-            Line { name: name.to_owned(), points: counts.map(|count| (count as f64, mean(name, count))).collect() }
+            Line {
+                name: name.to_owned(),
+                points: counts.map(|count| (count as f64, mean(name, count))).collect(),
+            }
         };
         let random = |trial: &Trial| (trial.count as f64, error(&trial.quality) / value(&trial.quality));
-        Panel { title: title.replace('_', " "), lines: names.iter().map(line).collect(), anchor: trials.first().map(random) }
+        Panel {
+            title: title.replace('_', " "),
+            lines: names.iter().map(line).collect(),
+            anchor: trials.first().map(random),
+        }
     };
     MEASURES.iter().filter_map(|m| Some(panel((m.name, m.value, m.error?)))).collect()
 }

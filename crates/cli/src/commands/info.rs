@@ -53,7 +53,10 @@ fn text(name: &str, report: &InfoReport<'_>, notes: &[String]) -> String {
     line("edges", edges.to_string());
     line("faces", mesh.faces.to_string());
     line("components", mesh.components.to_string());
-    line("border edges", if mesh.border_edges == 0 { "0 (closed)".into() } else { mesh.border_edges.to_string() });
+    line(
+        "border edges",
+        if mesh.border_edges == 0 { "0 (closed)".into() } else { mesh.border_edges.to_string() },
+    );
     line("Euler char.", euler_characteristic.to_string());
     line("area", mesh.area.to_string());
     line("from", format!("{} {} {}", low[0], low[1], low[2]));

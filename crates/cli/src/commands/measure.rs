@@ -67,14 +67,17 @@ pub(crate) fn run(args: &MeasureArgs, quiet: bool) -> Outcome {
 
 /// The measures as a table for people.
 fn text(quality: &Quality) -> String {
-    let Quality { energy, ball, half_space, patch, view, view_occluded, integration, spacing, components } = quality;
+    let Quality { energy, ball, half_space, patch, view, view_occluded, integration, spacing, components } =
+        quality;
     let mut text = String::new();
     let mut line = |what: &str, value: String| {
         let _ = writeln!(text, "  {what:<16} {value}");
     };
     line("", "against random points (1 is random, less is better), then the error itself".into());
     line("energy", format!("{:<8.3} eta {:.3} (1 is the best possible)", energy.mc, energy.eta));
-    let norms = |n: &Norms| format!("{:<8.3} mean {:.2e}, root mean square {:.2e}, largest {:.2e}", n.mc, n.l1, n.l2, n.linf);
+    let norms = |n: &Norms| {
+        format!("{:<8.3} mean {:.2e}, root mean square {:.2e}, largest {:.2e}", n.mc, n.l1, n.l2, n.linf)
+    };
     line("balls", norms(ball));
     line("half-spaces", norms(half_space));
     line("patches", norms(patch));
@@ -83,8 +86,14 @@ fn text(quality: &Quality) -> String {
     line("integration", format!("{:<8.3} root mean square {:.2e}", integration.mc, integration.rms));
     line(
         "spacing",
-        format!("smallest {:.3}, mean {:.3}, covering radius {:.3} (in distances of the hexagonal lattice)", spacing.min, spacing.mean, spacing.cover),
+        format!(
+            "smallest {:.3}, mean {:.3}, covering radius {:.3} (in distances of the hexagonal lattice)",
+            spacing.min, spacing.mean, spacing.cover
+        ),
     );
-    line("components", format!("{}, the worst share is off by {:.2} points", components.count, components.worst));
+    line(
+        "components",
+        format!("{}, the worst share is off by {:.2} points", components.count, components.worst),
+    );
     text
 }

@@ -16,7 +16,9 @@ pub(crate) fn run(args: &ShapeArgs, quiet: bool) -> Outcome {
     let extension = match (args.format, &destination) {
         (Some(format), _) => format.extension(),
         (None, Destination::Stdout) => {
-            return Err(Failure::wrong_use("a mesh on stdout needs a format: add --format ply, obj, stl or off"));
+            return Err(Failure::wrong_use(
+                "a mesh on stdout needs a format: add --format ply, obj, stl or off",
+            ));
         }
         (None, Destination::File(path)) => path.extension().and_then(|e| e.to_str()).unwrap_or_default(),
     };

@@ -57,7 +57,8 @@ fn write(
         outputs.stage(destination, svg.into_bytes())?;
     }
     if let Some(destination) = &wanted.preview {
-        outputs.stage(destination, preview_png(mesh, &run.strips, &run.samples, &PreviewOptions::default()))?;
+        outputs
+            .stage(destination, preview_png(mesh, &run.strips, &run.samples, &PreviewOptions::default()))?;
     }
     if let Some(wanted) = &wanted.points {
         stages.begin("write", 0);

@@ -44,7 +44,8 @@ const LEGEND_ROW: f64 = 18.0;
 pub(crate) fn error_plot(heading: &str, panels: &[Panel]) -> String {
     let columns = panels.len().clamp(1, COLUMNS);
     let rows = panels.len().div_ceil(columns);
-    let names: Vec<&str> = panels.first().map_or(Vec::new(), |p| p.lines.iter().map(|l| l.name.as_str()).collect());
+    let names: Vec<&str> =
+        panels.first().map_or(Vec::new(), |p| p.lines.iter().map(|l| l.name.as_str()).collect());
     let head = 34.0;
     let legend = LEGEND_ROW * names.len().div_ceil(columns * 2) as f64 + 16.0;
     let (width, height) = (WIDTH * columns as f64, head + HEIGHT * rows as f64 + legend);
@@ -98,7 +99,11 @@ impl Axis {
         let (low, high) =
             values.map(log10).fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         let margin = if low < high { 0.06 * (high - low) } else { 0.5 };
-        if low <= high { Self { low: low - margin, high: high + margin, from, to } } else { Self { low: 0.0, high: 1.0, from, to } }
+        if low <= high {
+            Self { low: low - margin, high: high + margin, from, to }
+        } else {
+            Self { low: 0.0, high: 1.0, from, to }
+        }
     }
 
     fn at(&self, value: f64) -> f64 {
@@ -171,7 +176,8 @@ fn draw(svg: &mut String, panel: &Panel) {
     }
     for (i, points) in shown.iter().enumerate() {
         let colour = colour(i);
-        let corners: Vec<String> = points.iter().map(|p| format!("{:.1},{:.1}", x.at(p.0), y.at(p.1))).collect();
+        let corners: Vec<String> =
+            points.iter().map(|p| format!("{:.1},{:.1}", x.at(p.0), y.at(p.1))).collect();
         let _ = writeln!(
             svg,
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.6\"/>",
@@ -245,9 +251,14 @@ mod tests {
             .split(' ')
             .map(|c| c.split_once(',').map(|(x, y)| (number(x), number(y))).expect("a pair"))
             .collect();
-        let guide = svg.split("stroke=\"#999\"").next().and_then(|s| s.rsplit("d=\"M").next()).expect("a guide");
-        let ends: Vec<f64> =
-            guide.trim_end_matches(['"', ' ']).split(['L', ' ']).filter(|w| !w.is_empty()).map(number).collect();
+        let guide =
+            svg.split("stroke=\"#999\"").next().and_then(|s| s.rsplit("d=\"M").next()).expect("a guide");
+        let ends: Vec<f64> = guide
+            .trim_end_matches(['"', ' '])
+            .split(['L', ' '])
+            .filter(|w| !w.is_empty())
+            .map(number)
+            .collect();
         let slope = (corners[1].1 - corners[0].1) / (corners[1].0 - corners[0].0);
         let guided = (ends[3] - ends[1]) / (ends[2] - ends[0]);
         assert!((slope - guided).abs() < 0.01, "{slope} {guided}");

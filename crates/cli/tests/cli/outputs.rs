@@ -8,9 +8,8 @@ use crate::common::{Folder, OCTAHEDRON, rows, square};
 #[test]
 fn all_outputs_of_one_run() {
     let folder = Folder::with_octahedron();
-    let ran = folder
-        .run("wrap octahedron.obj -n 50 -o p.ply --strips s.svg --report r.json --preview v.png")
-        .ok();
+    let ran =
+        folder.run("wrap octahedron.obj -n 50 -o p.ply --strips s.svg --report r.json --preview v.png").ok();
     assert_eq!(folder.names(), ["octahedron.obj", "p.ply", "r.json", "s.svg", "v.png"]);
     assert!(folder.read("p.ply").starts_with(b"ply\nformat binary_little_endian 1.0\n"));
     assert!(folder.text("s.svg").contains("<svg"));
@@ -60,7 +59,8 @@ fn a_mesh_from_stdin() {
     let folder = Folder::with_octahedron();
     let read = folder.run("wrap octahedron.obj -n 25 -o - --format csv").ok();
     for format in ["", "--mesh-format obj"] {
-        let piped = folder.run_with_input(&format!("wrap - {format} -n 25 -o - --format csv"), OCTAHEDRON).ok();
+        let piped =
+            folder.run_with_input(&format!("wrap - {format} -n 25 -o - --format csv"), OCTAHEDRON).ok();
         assert_eq!(piped.stdout, read.stdout);
         assert!(piped.stderr.contains("stdin"), "{}", piped.stderr);
     }
@@ -80,9 +80,11 @@ fn a_format_beats_the_extension() {
 fn a_missing_folder_is_seen_before_the_work() {
     let folder = Folder::with_octahedron();
     folder.write("keep.xyz", "as it was");
-    folder
-        .run("wrap octahedron.obj -o keep.xyz --report missing/r.json")
-        .failed(&["missing/r.json", "no folder missing", "create it"]);
+    folder.run("wrap octahedron.obj -o keep.xyz --report missing/r.json").failed(&[
+        "missing/r.json",
+        "no folder missing",
+        "create it",
+    ]);
     folder.run("wrap octahedron.obj -o keep.xyz/p.xyz").failed(&["keep.xyz/p.xyz", "not a folder"]);
     assert_eq!(folder.text("keep.xyz"), "as it was");
     assert_eq!(folder.names(), ["keep.xyz", "octahedron.obj"]);
@@ -131,9 +133,8 @@ fn when_one_output_fails_no_file_changes() {
 fn permissions_and_links_stay() {
     use std::os::unix::fs::{PermissionsExt, symlink};
     let folder = Folder::with_octahedron();
-    let mode = |name: &str| {
-        std::fs::metadata(folder.path(name)).expect("a file").permissions().mode() & 0o777
-    };
+    let mode =
+        |name: &str| std::fs::metadata(folder.path(name)).expect("a file").permissions().mode() & 0o777;
     folder.run("wrap octahedron.obj -n 3 -o new.xyz").ok();
     folder.write("plain", "");
     assert_eq!(mode("new.xyz"), mode("plain"), "as any new file");

@@ -56,8 +56,9 @@ fn the_same_bits_on_every_run_and_any_number_of_threads() {
     let folder = Folder::with_octahedron();
     for options in ["", "--no-equalize", "--sequence halton --seed 7", "--sequence sobol --seed 3"] {
         let run = |threads: &str| {
-            let ran =
-                folder.run(&format!("wrap octahedron.obj -n 500 {options} {threads} -o - --format ply -q")).ok();
+            let ran = folder
+                .run(&format!("wrap octahedron.obj -n 500 {options} {threads} -o - --format ply -q"))
+                .ok();
             ran.stdout
         };
         let first = run("");
@@ -73,7 +74,10 @@ fn options_change_the_points() {
     let folder = Folder::new();
     folder.write("square.obj", square(6));
     let run = |options: &str| {
-        folder.run(&format!("wrap square.obj -n 200 --no-equalize {options} -o - --format xyz -q")).ok().stdout
+        folder
+            .run(&format!("wrap square.obj -n 200 --no-equalize {options} -o - --format xyz -q"))
+            .ok()
+            .stdout
     };
     let mut seen = vec![run("")];
     for options in [

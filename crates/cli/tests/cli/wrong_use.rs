@@ -5,7 +5,9 @@ use crate::common::Folder;
 #[test]
 fn two_requests_exclude_each_other() {
     let folder = Folder::with_octahedron();
-    for pair in ["-n 10 --density 2", "--spacing 1 --irregularity 0.5", "-n 5 --spacing 0.1", "-n 5 --irregularity 1"] {
+    for pair in
+        ["-n 10 --density 2", "--spacing 1 --irregularity 0.5", "-n 5 --spacing 0.1", "-n 5 --irregularity 1"]
+    {
         folder.run(&format!("wrap octahedron.obj {pair}")).refused(&["cannot be used with"]);
     }
 }

@@ -51,7 +51,8 @@ fn flattest_exit(mesh: &SurfaceMesh, owner: &[u32], segment: &Segment) -> Option
         .flat_map(|a| (0..3).map(|c| HalfedgeId::of(a.face, c)))
         .filter_map(|h| {
             let neighbour = mesh.topology().twin(h)?.face();
-            (owner[neighbour.index()] != owner[h.face().index()]).then(|| (bend(mesh, h.face(), neighbour), h))
+            (owner[neighbour.index()] != owner[h.face().index()])
+                .then(|| (bend(mesh, h.face(), neighbour), h))
         })
         .min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))
         .map(|(_, h)| h)

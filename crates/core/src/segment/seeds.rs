@@ -77,7 +77,9 @@ impl Seeds {
     pub(super) fn save_border(&mut self, mesh: &SurfaceMesh, growth: &Growth<'_>, segment: &Segment) {
         for attachment in &segment.attachments {
             for corner in 0..3 {
-                let Some(twin) = mesh.topology().twin(HalfedgeId::of(attachment.face, corner)) else { continue };
+                let Some(twin) = mesh.topology().twin(HalfedgeId::of(attachment.face, corner)) else {
+                    continue;
+                };
                 if growth.is_free(twin.face()) {
                     self.saved.push(LongEdge { length: mesh.edge_length(twin), halfedge: twin });
                 }
