@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use ldwrap::io::PointFormat;
+use ldwrap::io::points::PointFormat;
 use ldwrap::shapes::Shape;
 
 use crate::methods::Method;

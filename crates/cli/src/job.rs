@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ldwrap::equalize::EqualizeOptions;
-use ldwrap::io::PointFormat;
+use ldwrap::io::points::PointFormat;
 use ldwrap::pipeline::{Options, Request};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::sequence::Sequence;

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use ldwrap::io::{PointFormat, PointRow, read_points, write_points};
+use ldwrap::io::points::{PointFormat, PointRow, read_points, write_points};
 use ldwrap::spatial::nearest;
 use ldwrap::{Progress, Sample, SurfaceMesh, SurfacePoint};
 use serde::Serialize;

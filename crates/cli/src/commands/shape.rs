@@ -1,7 +1,7 @@
 //! `shape`: the built-in shapes.
 
 use anyhow::Context;
-use ldwrap::io::write_mesh;
+use ldwrap::io::mesh_out::write_mesh;
 
 use crate::args::ShapeArgs;
 use crate::commands::counted;

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use assert_cmd::Command;
 use tempfile::TempDir;
@@ -60,6 +61,7 @@ impl Folder {
             .args(arguments.split_whitespace())
             .current_dir(self.0.path())
             .write_stdin(input.as_ref())
+            .timeout(Duration::from_secs(300))
             .output()
             .expect("the program runs");
         Ran {
