@@ -3,11 +3,15 @@
 mod detect;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+#[cfg(feature = "io")]
+pub mod mesh_out;
 #[cfg(feature = "obj")]
 pub mod obj;
 pub mod off;
 #[cfg(feature = "ply")]
 pub mod ply;
+#[cfg(feature = "io")]
+pub mod points;
 mod read;
 #[cfg(feature = "stl")]
 pub mod stl;
