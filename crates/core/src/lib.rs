@@ -12,6 +12,8 @@ pub mod measure;
 mod mesh;
 mod parallel;
 pub mod pipeline;
+#[cfg(test)]
+mod planted;
 mod progress;
 mod random;
 mod request;

@@ -9,6 +9,7 @@ use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::random::Random;
 use crate::sample::SurfacePoint;
+use crate::sequence::radical_inverse;
 
 /// Bits a coordinate of a face's middle is rounded to: three of them fill 63 bits of a key.
 const BITS: u32 = 21;
@@ -52,18 +53,12 @@ impl HilbertOrder {
         (0..count)
             .filter_map(|i| {
                 let (face, u) = self.0.at((i as f64 + along) / count as f64)?;
-                let v = radical_inverse(i as u64) + across;
+                let v = radical_inverse(i as u64, 2) + across;
                 let v = if v >= 1.0 { v - 1.0 } else { v };
                 Some(SurfacePoint { face, barycentric: square_to_triangle(u, v) })
             })
             .collect()
     }
-}
-
-/// The van der Corput sequence: the binary digits of `index` mirrored at the point, to 53 of them.
-#[inline]
-pub(super) fn radical_inverse(index: u64) -> f64 {
-    (index.reverse_bits() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }
 
 /// The place along the Hilbert curve of the cell that holds `p`, whose coordinates lie in [0, 2^BITS).
@@ -130,11 +125,5 @@ mod tests {
             assert_eq!(steps, 1, "{pair:?}");
         }
         assert_eq!(cells[0].1, [0, 0, 0]);
-    }
-
-    #[test]
-    fn van_der_corput_by_hand() {
-        let first: Vec<f64> = (0..8).map(radical_inverse).collect();
-        assert_eq!(first, [0.0, 0.5, 0.25, 0.75, 0.125, 0.625, 0.375, 0.875]);
     }
 }

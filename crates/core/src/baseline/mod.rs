@@ -91,3 +91,6 @@ mod purpose {
     pub(super) const POISSON: u64 = 0x62_61_73_03;
     pub(super) const SPHERE: u64 = 0x62_61_73_04;
 }
+
+#[cfg(test)]
+mod tests;

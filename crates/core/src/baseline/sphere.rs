@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::hilbert::radical_inverse;
 use super::{NotASphere, purpose};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::random::Random;
 use crate::sample::SurfacePoint;
+use crate::sequence::radical_inverse;
 use crate::spatial::{Caster, nearest};
 
 /// The unit vector at height `z` and `turn` (1 is once around) about the polar axis.
@@ -24,7 +24,7 @@ fn direction(z: f64, turn: f64) -> DVec3 {
 /// of Graphics Tools 2(2), 1997, DOI 10.1080/10867651.1997.10487471: what the paper compares with in figure 4.
 pub fn hammersley_directions(count: usize) -> Vec<DVec3> {
     (0..count)
-        .map(|i| direction(2.0 * radical_inverse(i as u64) - 1.0, (i as f64 + 0.5) / count as f64))
+        .map(|i| direction(2.0 * radical_inverse(i as u64, 2) - 1.0, (i as f64 + 0.5) / count as f64))
         .collect()
 }
 

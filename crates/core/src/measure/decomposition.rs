@@ -151,3 +151,128 @@ impl Parts {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ids::FaceId;
+    use crate::mesh::shapes;
+    use crate::planted::mesh;
+    use crate::progress::Silent;
+    use crate::segment::{Attachment, Segment, SegmentOptions, Segmentation, segment};
+    use crate::unfold::unfold;
+
+    fn unfolded(mesh: &SurfaceMesh) -> Strips {
+        unfold(mesh, &segment(mesh, &SegmentOptions::default()))
+    }
+
+    #[test]
+    fn a_flat_square_does_not_fall_apart() {
+        let square = mesh(&shapes::square(5));
+        let joints = Joints::of(&square, &unfolded(&square), 1e-9);
+        let parts = decomposition(&square, &joints, &PatchOptions::default(), &Silent);
+        assert_eq!((parts.degree, parts.mean), (1, 1.0));
+    }
+
+    #[test]
+    fn faces_in_segments_of_their_own_fall_apart_entirely() {
+        let square = mesh(&shapes::square(3));
+        let alone = |face| Segment { attachments: vec![Attachment { face, across: None }] };
+        let cut = Segmentation { segments: square.topology().face_ids().map(alone).collect() };
+        let joints = Joints::of(&square, &unfold(&square, &cut), 1e9);
+        let options = PatchOptions { seeds: 1, seed: 3 };
+        let parts = decomposition(&square, &joints, &options, &Silent);
+        // Every figure falls into its triangles; the last is the whole square.
+        assert_eq!(parts.degree, 18);
+        let mut sizes = Vec::new();
+        patch::grow(square.topology(), patch::seed_faces(&square, &options)[0], |ring| {
+            sizes.push(ring.len() + sizes.last().copied().unwrap_or(0));
+        });
+        assert_eq!(parts.figures, sizes.len());
+        assert_eq!(parts.mean, sizes.iter().sum::<usize>() as f64 / sizes.len() as f64);
+    }
+
+    #[test]
+    fn a_cut_of_a_tetrahedron_is_open_until_the_tolerance_closes_it() {
+        let body = mesh(&shapes::tetrahedron());
+        let all = SegmentOptions { flatness_angle: std::f64::consts::PI, ..SegmentOptions::default() };
+        let strips = unfold(&body, &segment(&body, &all));
+        assert_eq!(strips.strips.len(), 1);
+        let joined = |tolerance| {
+            let joints = Joints::of(&body, &strips, tolerance);
+            (0..12).filter(|&h| joints.is_joined(HalfedgeId::new(h))).count()
+        };
+        // The spanning tree of four faces joins three edges, each with two sides.
+        assert_eq!(joined(1e-9), 6);
+        assert_eq!(joined(1e9), 12);
+        let whole = |tolerance| {
+            let joints = Joints::of(&body, &strips, tolerance);
+            decomposition(&body, &joints, &PatchOptions::default(), &Silent).degree
+        };
+        // A face with its three neighbours is the whole body, one strip; never more than the three neighbours of a
+        // face that is joined to none of them.
+        assert!(whole(1e-9) <= 3 && whole(1e9) == 1);
+    }
+
+    #[test]
+    fn joints_agree_with_their_twins() {
+        let ball = mesh(&shapes::uv_sphere(20, 20));
+        let joints = Joints::of(&ball, &unfolded(&ball), 1e-3);
+        for face in ball.topology().face_ids() {
+            for corner in 0..3 {
+                let halfedge = HalfedgeId::of(face, corner);
+                let twin = ball.topology().twin(halfedge).expect("a closed body");
+                assert_eq!(joints.is_joined(halfedge), joints.is_joined(twin));
+            }
+        }
+    }
+
+    #[test]
+    fn parts_are_counted_as_by_flooding() {
+        let ball = mesh(&shapes::uv_sphere(12, 12));
+        let joints = Joints::of(&ball, &unfolded(&ball), 1e-6);
+        let seed = FaceId(17);
+        let mut figure = vec![false; ball.face_count()];
+        let mut parts = Parts::new(ball.face_count());
+        patch::grow(ball.topology(), seed, |ring| {
+            for &face in ring {
+                figure[face.index()] = true;
+                parts.add(face.0);
+                for corner in 0..3 {
+                    let halfedge = HalfedgeId::of(face, corner);
+                    let twin = ball.topology().twin(halfedge).expect("a closed body");
+                    if joints.is_joined(halfedge) {
+                        parts.join(face.0, twin.face().0);
+                    }
+                }
+            }
+            let mut seen = figure.iter().map(|&inside| !inside).collect::<Vec<bool>>();
+            let mut count = 0;
+            for start in ball.topology().face_ids() {
+                if seen[start.index()] {
+                    continue;
+                }
+                count += 1;
+                let mut stack = vec![start];
+                while let Some(face) = stack.pop() {
+                    if std::mem::replace(&mut seen[face.index()], true) {
+                        continue;
+                    }
+                    for corner in 0..3 {
+                        let halfedge = HalfedgeId::of(face, corner);
+                        if joints.is_joined(halfedge) {
+                            stack.extend(ball.topology().twin(halfedge).map(HalfedgeId::face));
+                        }
+                    }
+                }
+            }
+            assert_eq!(parts.count, count);
+        });
+    }
+
+    #[test]
+    fn the_bound_by_hand() {
+        // Ten parts, each off by at most 2 of 100 points in the domain, of which 50 land on the surface: 20 of 50.
+        assert!((surface_bound(10, 0.02, 100, 50) - 0.4).abs() < 1e-15);
+    }
+}

@@ -174,6 +174,9 @@ impl Caster {
         if self.triangles.is_empty() || direction == DVec3::ZERO || !origin.is_finite() {
             return None;
         }
+        // Single precision is good near the mesh only: start where the ray comes near.
+        let skipped = (-origin.dot(direction) - SIDE).max(0.0);
+        let origin = origin + direction * skipped;
         let mut best: Option<(f64, FaceId, [f64; 3])> = None;
         // Every hit is looked at: single precision must not choose between two that are close.
         self.tree.ray_traverse(
@@ -182,7 +185,7 @@ impl Caster {
             |_, slot| {
                 let triangle = &self.triangles[slot];
                 let Some((t, v, w)) = triangle.meet(origin, direction) else { return f32::INFINITY };
-                if t <= NEAREST_HIT {
+                if t + skipped <= NEAREST_HIT {
                     return f32::INFINITY;
                 }
                 if best.is_none_or(|(other, face, _)| t < other || (t == other && triangle.face < face)) {
@@ -194,14 +197,15 @@ impl Caster {
         );
         best.map(|(t, face, barycentric)| Hit {
             point: SurfacePoint { face, barycentric },
-            distance: t / self.frame.scale,
+            distance: (t + skipped) / self.frame.scale,
         })
     }
 }
 
 /// The ray as the tree takes it. Its boxes are wide enough for the rounding.
 fn single_ray(origin: DVec3, direction: DVec3, length: f64) -> Ray {
-    let single = |p: DVec3| Vec3A::new(p.x as f32, p.y as f32, p.z as f32);
+    // Adding zero makes -0 positive: obvhs takes its inverse as negative and its sign as positive.
+    let single = |p: DVec3| Vec3A::new(p.x as f32 + 0.0, p.y as f32 + 0.0, p.z as f32 + 0.0);
     // All of the mesh lies within the cube: a longer ray meets nothing more.
     let reach = 2.0 * SIDE + origin.length();
     Ray::new(single(origin), single(direction), 0.0, (length.min(reach) * (1.0 + 1e-6) + 1e-2) as f32)

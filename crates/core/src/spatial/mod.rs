@@ -9,3 +9,6 @@ mod nearest;
 
 pub use caster::{Camera, Caster, Hit};
 pub use nearest::{Projected, nearest};
+
+#[cfg(test)]
+mod tests;

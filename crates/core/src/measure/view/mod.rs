@@ -262,3 +262,6 @@ fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
     }
     (sum / count).sqrt()
 }
+
+#[cfg(test)]
+mod tests;
