@@ -31,6 +31,11 @@ impl Segment {
         segment_distance(self.from, self.to, p)
     }
 
+    /// Whether it is one point, and that an end of a segment with a length: never nearer than that one.
+    fn is_end_of(&self, other: &Segment) -> bool {
+        self.from == self.to && other.from != other.to && (self.from == other.from || self.from == other.to)
+    }
+
     fn nearest(&self, triangle: &[DVec2; 3]) -> Nearest {
         let along = self.to - self.from;
         let squared = along.length_squared();
@@ -52,7 +57,7 @@ impl Segment {
 
 /// Drops every segment that another one is at least as near as everywhere in the triangle (up to `slack`), so far
 /// as that can be told from its corners: the difference of two distances that are both linear, or of the squares
-/// of two distances to points, is linear over the triangle.
+/// of two distances to points, is linear over the triangle. Ends of other segments are dropped too.
 pub(super) fn drop_dominated(segments: &mut Vec<Segment>, triangle: &[DVec2; 3], slack: f64) {
     let seen: Vec<_> = segments
         .iter()
@@ -70,7 +75,8 @@ pub(super) fn drop_dominated(segments: &mut Vec<Segment>, triangle: &[DVec2; 3],
         let (Some(kind), far) = seen[i] else { continue };
         kept[i] = !(0..segments.len()).any(|j| {
             let (other, near) = seen[j];
-            j != i && kept[j] && other == Some(kind) && (0..3).all(|c| near[c] <= far[c] + slack)
+            let nearer = other == Some(kind) && (0..3).all(|c| near[c] <= far[c] + slack);
+            j != i && kept[j] && (nearer || segments[i].is_end_of(&segments[j]))
         });
     }
     let mut kept = kept.into_iter();
@@ -79,26 +85,43 @@ pub(super) fn drop_dominated(segments: &mut Vec<Segment>, triangle: &[DVec2; 3],
 
 /// The area of the part of a counterclockwise triangle that lies within `radius` of a segment.
 pub(super) fn covered_area(triangle: &[DVec2; 3], segment: &Segment, radius: f64) -> f64 {
-    let whole = Polygon::new(triangle);
-    let along = segment.to - segment.from;
-    let Some(direction) = along.try_normalize() else {
-        return disc_area(&whole, segment.from, radius);
-    };
-    let across = direction.perp();
-    let start = direction.dot(segment.from);
-    let end = direction.dot(segment.to);
-    let line = across.dot(segment.from);
-    let before = whole.clip(-direction, -start);
-    let after = whole.clip(direction, end);
-    let beside = whole
-        .clip(direction, start)
-        .clip(-direction, -end)
-        .clip(across, line - radius)
-        .clip(-across, -line - radius);
-    disc_area(&before, segment.from, radius) + beside.area() + disc_area(&after, segment.to, radius)
+    Polygon::new(triangle).covered_area(segment, radius)
 }
 
-/// A convex polygon with few corners. A triangle cut by four half-planes has at most seven.
+/// The same for the union of what two segments cover, if they meet at an end and no point of the triangle is nearest
+/// to the other end of the segment on whose side it lies; else `None`.
+///
+/// The line that halves the angle between two rays parts the points nearer to the one from those nearer to the
+/// other, so each side needs to be measured against one segment only.
+pub(super) fn covered_area_of_pair(
+    triangle: &[DVec2; 3],
+    one: &Segment,
+    other: &Segment,
+    radius: f64,
+) -> Option<f64> {
+    let (corner, one_end, other_end) = if one.to == other.from {
+        (one.to, one.from, other.to)
+    } else if one.from == other.to {
+        (one.from, one.to, other.from)
+    } else {
+        return None;
+    };
+    let toward_one = (one_end - corner).try_normalize()?;
+    let toward_other = (other_end - corner).try_normalize()?;
+    // Its points have the same product with both directions.
+    let across = toward_one - toward_other;
+    let line = across.dot(corner);
+    let whole = Polygon::new(triangle);
+    let (near_one, near_other) = (whole.clip(across, line), whole.clip(-across, -line));
+    let within = |part: &Polygon, direction: DVec2, length: f64| {
+        part.sides().all(|(p, _)| direction.dot(p - corner) <= length)
+    };
+    let rays = within(&near_one, toward_one, corner.distance(one_end))
+        && within(&near_other, toward_other, corner.distance(other_end));
+    rays.then(|| near_one.covered_area(one, radius) + near_other.covered_area(other, radius))
+}
+
+/// A convex polygon with few corners. A triangle cut by five half-planes has at most eight.
 #[derive(Clone, Copy)]
 struct Polygon {
     corners: [DVec2; 8],
@@ -129,6 +152,25 @@ impl Polygon {
             }
         }
         part
+    }
+
+    /// The area of its part within `radius` of a segment: beside it, and around its two ends.
+    fn covered_area(&self, segment: &Segment, radius: f64) -> f64 {
+        let Some(direction) = (segment.to - segment.from).try_normalize() else {
+            return disc_area(self, segment.from, radius);
+        };
+        let across = direction.perp();
+        let start = direction.dot(segment.from);
+        let end = direction.dot(segment.to);
+        let line = across.dot(segment.from);
+        let before = self.clip(-direction, -start);
+        let after = self.clip(direction, end);
+        let beside = self
+            .clip(direction, start)
+            .clip(-direction, -end)
+            .clip(across, line - radius)
+            .clip(-across, -line - radius);
+        disc_area(&before, segment.from, radius) + beside.area() + disc_area(&after, segment.to, radius)
     }
 
     fn push(&mut self, p: DVec2) {

@@ -10,11 +10,12 @@
 //! |---|---|---|
 //! | [`bound`](Irregularity::bound) | eq. 8: a rectangle an edge, two squares a concave corner | yes |
 //! | [`refined`](Irregularity::refined) | cases a to c: the band of each edge, ended by the half-angle lines | yes: thin fingers count twice |
-//! | [`exact`](Irregularity::exact) | the area of the points nearer than d_m to an open border edge of their strip | never |
+//! | [`exact`](Irregularity::exact) | the area of the points nearer than d_m to an open border edge, through the strip | never |
 
 mod bound;
 mod capsule;
 mod exact;
+mod flood;
 mod open;
 mod refined;
 #[cfg(test)]
@@ -40,8 +41,8 @@ pub struct Irregularity {
 /// The three estimates of R at mean spacing `d_m`, where cuts with a gap of at most `tolerance` count as closed;
 /// both are lengths in units of the mesh. All are 0 for strips without area.
 ///
-/// Cost: linear in the faces for the first two; the exact one adds a search of the nearest border edges for each
-/// face, and a subdivision of those faces that the rim of the zone crosses.
+/// Cost: linear in the faces for the first two; the exact one adds a flood from all open edges at once, and a
+/// subdivision of those faces that the rim of the zone crosses.
 pub fn irregularity(strips: &Strips, d_m: f64, tolerance: f64) -> Irregularity {
     let total = total_area(strips);
     if total <= 0.0 {

@@ -9,6 +9,8 @@ use crate::unfold::{BorderEdge, Strip, Twin};
 /// A border edge at which the distribution is broken. The strip lies to its left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct OpenEdge {
+    /// Its place in [`Strip::border`].
+    pub(super) place: usize,
     /// Where it starts.
     pub(super) from: DVec2,
     /// Where it ends.
@@ -26,13 +28,11 @@ pub(super) struct OpenEdge {
 /// All border edges of `strip` whose gap is wider than `tolerance`, in the order of the border.
 pub(super) fn open_edges(strip: &Strip, tolerance: f64) -> Vec<OpenEdge> {
     let border = Border::new(strip, tolerance);
-    // The place of each edge in the list of the open ones; meaningless for closed edges.
-    let mut place = vec![0usize; strip.border.len()];
     let mut edges: Vec<OpenEdge> = Vec::new();
-    for (i, edge) in strip.border.iter().enumerate() {
-        if border.open[i] {
-            place[i] = edges.len();
+    for (place, edge) in strip.border.iter().enumerate() {
+        if border.open[place] {
             edges.push(OpenEdge {
+                place,
                 from: strip.vertices[edge.from as usize],
                 to: strip.vertices[edge.to as usize],
                 length: strip.border_length(edge),
@@ -41,10 +41,12 @@ pub(super) fn open_edges(strip: &Strip, tolerance: f64) -> Vec<OpenEdge> {
             });
         }
     }
-    for i in (0..strip.border.len()).filter(|&i| border.open[i]) {
-        let (after, angle) = border.next_open(i);
-        edges[place[i]].end_angle = angle;
-        edges[place[after]].start_angle = angle;
+    for i in 0..edges.len() {
+        let (after, angle) = border.next_open(edges[i].place);
+        edges[i].end_angle = angle;
+        if let Ok(after) = edges.binary_search_by_key(&after, |edge| edge.place) {
+            edges[after].start_angle = angle;
+        }
     }
     edges
 }

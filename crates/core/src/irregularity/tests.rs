@@ -216,7 +216,21 @@ fn the_tip_of_an_overlap_has_more_than_a_full_turn() {
     let tip = square * (7.0 * PI / 3.0 - PI) / 2.0;
     assert_near(found.bound, (9.0 * d_m + 2.0 * square) / area);
     assert_near(found.refined, (9.0 * d_m - square * (6.0 / root + 2.0 * root) + tip) / area);
-    assert!(found.exact < 1.0);
+    assert_exact(found, (9.0 * d_m - square * (6.0 / root + 2.0 * root) + tip) / area);
+}
+
+#[test]
+fn an_edge_over_another_sheet_does_not_count_there() {
+    // Ten triangles wind around by 600 degrees: the cut's copies lie over the inside of the other turn.
+    let d_m = 0.2;
+    let found = irregularity(&alone(fan(10)), d_m, 1e-9);
+    let area = 10.0 * 3f64.sqrt() / 4.0;
+    let square = d_m * d_m;
+    let root = 3f64.sqrt();
+    // The two perpendiculars at the tip leave 420 degrees of a disc between them.
+    let zone = 12.0 * d_m - square * (9.0 / root + 2.0 * root) + square * (7.0 * PI / 3.0) / 2.0;
+    assert_near(found.refined, zone / area);
+    assert_exact(found, zone / area);
 }
 
 /// A box with a slit that is open as far as its middle and closed from there to its end.
