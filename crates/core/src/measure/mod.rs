@@ -7,18 +7,18 @@
 
 mod ball;
 mod component;
+pub mod decomposition;
 mod energy;
 mod half_space;
 mod halving;
 mod integration;
 mod norms;
+mod patch;
+pub mod plane;
 mod profile;
 mod spacing;
 mod testset;
 mod tree;
-pub mod decomposition;
-mod patch;
-pub mod plane;
 mod view;
 
 #[cfg(test)]
@@ -26,12 +26,12 @@ mod testmesh;
 #[cfg(test)]
 mod tests;
 
-pub use ball::{Ball, BallOptions, BallReport, ball};
+pub use ball::{Ball, BallOptions, BallReport, Balls, ball};
 pub use component::{ComponentReport, ComponentShare, components};
-pub use energy::{EnergyOptions, EnergyReport, energy};
-pub use half_space::{HalfSpace, HalfSpaceOptions, HalfSpaceReport, half_space};
-pub use integration::{IntegrationOptions, IntegrationReport, integration};
+pub use energy::{EnergyOptions, EnergyPlanes, EnergyReport, energy};
+pub use half_space::{HalfSpace, HalfSpaceOptions, HalfSpaceReport, HalfSpaces, half_space};
+pub use integration::{IntegrationOptions, IntegrationReport, TestFunctions, integration};
 pub use norms::{Norms, Shares};
-pub use spacing::{SpacingOptions, SpacingReport, spacing};
 pub use patch::{PatchOptions, patch};
+pub use spacing::{SpacingOptions, SpacingReport, spacing};
 pub use view::{ViewOptions, ViewReport, Views, cameras, view};
