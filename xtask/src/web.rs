@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::command::{command, find_program, output, run};
+use crate::command::{command, find_program, run};
 use crate::toolchain::{WasmToolchain, wasm_bindgen};
 use crate::{Failure, root, target};
 
@@ -48,26 +48,9 @@ fn build(folder: &Path, features: &[&str]) -> Result<(), Failure> {
         .env("RUSTFLAGS", format!("--remap-path-prefix={}=.", root().display())))?;
     fs::create_dir_all(folder)?;
     run(command(bindgen)
-        .args(["--target", "web", "--out-name", "ldwrap_web", "--out-dir"])
+        .args(["--target", "web", "--remove-name-section", "--remove-producers-section", "--out-name", "ldwrap_web", "--out-dir"])
         .arg(folder)
-        .arg(toolchain.built(PROFILE, "ldwrap_web.wasm")))?;
-    shrink(&folder.join("ldwrap_web_bg.wasm"))
-}
-
-/// Shrinks a module with wasm-opt where that is installed and knows the module's features.
-fn shrink(module: &Path) -> Result<(), Failure> {
-    let Some(wasm_opt) = find_program("wasm-opt") else {
-        eprintln!("wasm-opt was not found: the module stays a little larger");
-        return Ok(());
-    };
-    let small = module.with_extension("small");
-    let shrunk = output(command(wasm_opt).args(["-Os", "--all-features", "-o"]).arg(&small).arg(module));
-    // `--all-features` lets old versions write types that engines reject: only a module that validates is kept.
-    match shrunk.and_then(|_| small.metadata().ok()) {
-        Some(_) => fs::rename(&small, module)?,
-        None => eprintln!("this wasm-opt cannot read the module: it stays a little larger"),
-    }
-    Ok(())
+        .arg(toolchain.built(PROFILE, "ldwrap_web.wasm")))
 }
 
 fn copy_all(from: &Path, to: &Path) -> Result<(), Failure> {

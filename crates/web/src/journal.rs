@@ -41,12 +41,12 @@ impl Journal {
             return true;
         }
         let Some(Posted::Asked(job)) = self.posted.pop_front() else { return false };
-        match (answer, &job) {
-            (Answer::Loaded(_), _) => {
+        match (answer, job) {
+            (Answer::Loaded(_), job) => {
                 self.load = Some(job);
                 self.places = [None, None];
             }
-            (Answer::Wrapped(slot, _), _) | (Answer::Progress(..), Job::Place(slot, _)) => {
+            (Answer::Wrapped(..), job @ Job::Wrap(slot, _)) | (Answer::Progress(..), job @ Job::Place(slot, _)) => {
                 self.places[slot.index()] = Some(job);
             }
             _ => {}

@@ -87,7 +87,7 @@ pub fn judge(
     match measure {
         Measure::Energy => {
             let report =
-                measure::energy(mesh, points, &EnergyOptions { blocks: 4, directions: 32 }, progress);
+                measure::energy(mesh, points, &EnergyOptions { work: 2e7, ..Default::default() }, progress);
             of(report.mc, format!("eta {:.3}, where 1 is the best that points can be", report.eta))
         }
         Measure::HalfSpace => {

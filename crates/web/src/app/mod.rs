@@ -96,6 +96,7 @@ impl App {
         let mut state = self.model.inspect();
         state["saved"] = self.saved.iter().map(|(name, size)| serde_json::json!([name, size])).collect();
         state["frameMilliseconds"] = self.frames.mean().into();
+        state["firstPictureSeconds"] = self.frames.first_picture().into();
         state
     }
 
@@ -265,6 +266,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         self.frames.count(&ctx);
+        self.frames.shown(&ctx, self.model.runs[0].is_some());
         self.exchange(&ctx);
         keys::handle(&ctx, &mut self.model);
         let narrow = ui.available_width() < NARROW;

@@ -34,6 +34,11 @@ impl Palette {
         }
     }
 
+    /// Whether these are the colours for dark.
+    pub(crate) fn is_dark(&self) -> bool {
+        self.background.r() < 128
+    }
+
     /// The colour of a place where points stand for this much of what they should: blue where they lie too thin,
     /// orange where too dense.
     pub(crate) fn surplus(&self, ratio: f32) -> [u8; 3] {
