@@ -1,5 +1,52 @@
-//! The program `ldwrap-cli`.
+//! The program `ldwrap-cli`: meshes in, points, pictures and reports out.
 
+mod args;
+mod commands;
+mod exit;
+mod input;
+mod job;
+mod methods;
+mod output;
 mod picture;
+mod points;
+mod progress;
+mod quality;
+mod report;
+mod table;
 
-fn main() {}
+use std::num::NonZeroUsize;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use clap::Parser;
+
+use crate::args::{Command, CommandLine};
+use crate::exit::Outcome;
+
+fn main() -> ExitCode {
+    match run(&CommandLine::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.tell(),
+    }
+}
+
+fn run(line: &CommandLine) -> Outcome {
+    if let Some(threads) = line.threads {
+        limit_threads(threads)?;
+    }
+    match &line.command {
+        Command::Wrap(args) => commands::wrap::run(args, line.quiet),
+        Command::Strips(args) => commands::strips::run(args, line.quiet),
+        Command::Info(args) => commands::info::run(args, line.quiet),
+        Command::Shape(args) => commands::shape::run(args, line.quiet),
+        Command::Measure(args) => commands::measure::run(args, line.quiet),
+        Command::Compare(args) => commands::compare::run(args, line.quiet),
+    }
+}
+
+fn limit_threads(threads: NonZeroUsize) -> anyhow::Result<()> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.get())
+        .build_global()
+        .with_context(|| format!("--threads {threads}"))
+}

@@ -12,12 +12,15 @@ pub mod measure;
 mod mesh;
 mod parallel;
 pub mod pipeline;
+#[cfg(test)]
+mod planted;
 mod progress;
 mod random;
 mod request;
 mod sample;
 pub mod segment;
 pub mod sequence;
+pub mod spatial;
 pub mod unfold;
 pub mod wrap;
 

@@ -1,1 +1,20 @@
 //! Readers and writers: bytes in, bytes out, one file a format.
+
+mod detect;
+#[cfg(feature = "gltf")]
+pub mod gltf;
+#[cfg(feature = "io")]
+pub mod mesh_out;
+#[cfg(feature = "obj")]
+pub mod obj;
+pub mod off;
+#[cfg(feature = "ply")]
+pub mod ply;
+#[cfg(feature = "io")]
+pub mod points;
+mod read;
+#[cfg(feature = "stl")]
+pub mod stl;
+
+pub use detect::{MeshFormat, detect};
+pub use read::{Place, ReadError, Resolver, read_mesh};

@@ -262,8 +262,8 @@ proptest! {
         scale in prop::sample::select(vec![1e-30, 1.0, 1e30]),
         polygons in prop::collection::vec(prop::collection::vec(0u32..12, 0..7), 0..12),
     ) {
-        let mut soup = PolygonSoup::default();
-        soup.positions = grid.iter().map(|&(x, y, z)| dvec3(x.into(), y.into(), z.into()) * scale).collect();
+        let positions = grid.iter().map(|&(x, y, z)| dvec3(x.into(), y.into(), z.into()) * scale).collect();
+        let mut soup = PolygonSoup { positions, ..Default::default() };
         for polygon in &polygons {
             soup.push_polygon(polygon);
         }

@@ -1,0 +1,337 @@
+//! The command line as it is typed. What the values mean together is checked in `job`.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use ldwrap::io::points::PointFormat;
+use ldwrap::shapes::Shape;
+
+use crate::methods::Method;
+
+/// Spreads low-discrepancy points over polygon meshes.
+///
+/// Every part of the surface, every view of it and every piece that is left visible behind an obstacle holds its
+/// fair share of the points.
+#[derive(Debug, Parser)]
+#[command(name = "ldwrap-cli", version, max_term_width = 100, arg_required_else_help = true)]
+#[command(after_help = "Exit codes: 0 done, 1 failed, 2 wrong use.")]
+pub(crate) struct CommandLine {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Use this many threads [default: all cores]; the results are the same bits with any number
+    #[arg(long, global = true, value_name = "K")]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// Print nothing on stderr but errors
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Spread points over a mesh
+    Wrap(WrapArgs),
+    /// Draw how a mesh is segmented and unfolded, without points
+    Strips(StripsArgs),
+    /// Tell what a mesh is: counts, area, components, borders, what was repaired
+    Info(InfoArgs),
+    /// Make one of the built-in shapes
+    Shape(ShapeArgs),
+    /// Tell how good points are, whoever made them
+    Measure(MeasureArgs),
+    /// Compare methods by all measures
+    Compare(CompareArgs),
+}
+
+/// Where the mesh comes from.
+#[derive(Debug, Args)]
+pub(crate) struct MeshArgs {
+    /// The mesh: a PLY, OBJ, STL, glTF, GLB or OFF file, or `-` for stdin
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
+    /// The format of the mesh [default: told by its content, then by its name]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) mesh_format: Option<MeshFormatArg>,
+    /// Leave components that are wound inward as they are, instead of turning them outward
+    #[arg(long)]
+    pub(crate) keep_winding: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MeshFormatArg {
+    Ply,
+    Obj,
+    Stl,
+    /// As JSON or binary (GLB)
+    Gltf,
+    Off,
+}
+
+/// How many points; at most one of these.
+#[derive(Debug, Args)]
+#[group(required = false, multiple = false)]
+pub(crate) struct RequestArgs {
+    /// Make exactly N points [default: 1000]
+    #[arg(short = 'n', long = "count", value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) count: Option<u32>,
+    /// Make D points per squared unit of the mesh
+    #[arg(long, value_name = "D", value_parser = positive)]
+    pub(crate) density: Option<f64>,
+    /// Make points with a mean distance S between neighbours, in units of the mesh
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(crate) spacing: Option<f64>,
+    /// Make as many points as bring the irregularity ratio R (eq. 8) down to this
+    #[arg(long, value_name = "R", value_parser = positive)]
+    pub(crate) irregularity: Option<f64>,
+}
+
+/// How the surface is cut.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Segmentation")]
+pub(crate) struct SegmentArgs {
+    /// The largest angle between the normals of neighbours, in degrees, that counts as almost flat [default: 40]
+    #[arg(long, value_name = "DEG", value_parser = angle)]
+    pub(crate) flatness_angle: Option<f64>,
+    /// Strips with a smaller share of all triangles go on growing whatever the angle [default: 0.002]
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(crate) smallest_share: Option<f64>,
+    /// In which order a strip grows [default: flattest-first]
+    #[arg(long, value_enum, value_name = "ORDER")]
+    pub(crate) growth: Option<GrowthArg>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum GrowthArg {
+    /// The paper's: along the boundary, first in, first out
+    BoundaryWalk,
+    /// The smallest angle between the normals first
+    FlattestFirst,
+    /// The longest edge first
+    LongestFirst,
+}
+
+/// The point set on the planar domain.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Points in the plane")]
+pub(crate) struct SequenceArgs {
+    /// The low-discrepancy set that is wrapped onto the surface
+    #[arg(long, value_enum, value_name = "NAME", default_value = "hammersley")]
+    pub(crate) sequence: SequenceArg,
+    /// The bases of the radical inverses: one for hammersley [default: 2], two for halton [default: 2,3], which
+    /// must have no common factor
+    #[arg(long, value_delimiter = ',', value_name = "A[,B]", value_parser = clap::value_parser!(u32).range(2..))]
+    pub(crate) bases: Option<Vec<u32>>,
+    /// Shift the set (Cranley-Patterson rotation), to repeat or replicate a run; 0 leaves it as it is
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Interstices and overlaps thinner than this many mean distances are corrected, 0 to 1
+    #[arg(long, value_name = "T", default_value_t = 0.1, value_parser = share)]
+    pub(crate) tolerance: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SequenceArg {
+    /// (i / n, radical inverse of i)
+    Hammersley,
+    /// Radical inverses of i in two bases
+    Halton,
+    /// Sobol' with Owen's scrambling, which the seed chooses
+    Sobol,
+    /// Multiples of the powers of the plastic number
+    R2,
+    /// (i / n, i / golden ratio)
+    Fibonacci,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct WrapArgs {
+    #[command(flatten)]
+    pub(crate) mesh: MeshArgs,
+    #[command(flatten)]
+    pub(crate) request: RequestArgs,
+    #[command(flatten)]
+    pub(crate) sequence: SequenceArgs,
+    #[command(flatten)]
+    pub(crate) segment: SegmentArgs,
+    /// Leave the points where the paper's method puts them, instead of evening out the area each stands for
+    #[arg(long)]
+    pub(crate) no_equalize: bool,
+    #[command(flatten)]
+    pub(crate) outputs: WrapOutputArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Outputs")]
+pub(crate) struct WrapOutputArgs {
+    /// Write the points: .ply, .xyz, .csv, .npy, .json or .obj, or `-` for stdout with --format
+    #[arg(short, long, value_name = "POINTS")]
+    pub(crate) output: Option<PathBuf>,
+    /// The format of the points [default: by the name's extension]
+    #[arg(long, value_name = "FORMAT", requires = "output", value_parser = point_formats())]
+    pub(crate) format: Option<PointFormat>,
+    /// Draw the strips in the plane with their points, as SVG
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) strips: Option<PathBuf>,
+    /// Write what was done as JSON, or `-` for stdout
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) report: Option<PathBuf>,
+    /// Draw the mesh in the colours of its strips with its visible points, as PNG
+    #[arg(long, value_name = "FILE.png")]
+    pub(crate) preview: Option<PathBuf>,
+    /// Measure the points too, as `measure` does, and add that to the report
+    #[arg(long, requires = "report")]
+    pub(crate) quality: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StripsArgs {
+    #[command(flatten)]
+    pub(crate) mesh: MeshArgs,
+    #[command(flatten)]
+    pub(crate) segment: SegmentArgs,
+    /// The SVG picture, or `-` for stdout
+    #[arg(short, long, value_name = "FILE.svg")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ShapeArgs {
+    /// The shape
+    #[arg(value_name = "NAME", value_parser = shapes())]
+    pub(crate) shape: Shape,
+    /// Make about this many triangles [default: the paper's, or what shows well]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(Shape::MOST_FACES)))]
+    pub(crate) faces: Option<u32>,
+    /// The mesh to write: .ply, .obj, .stl or .off, or `-` for stdout with --format
+    #[arg(short, long, value_name = "MESH")]
+    pub(crate) output: PathBuf,
+    /// The format of the mesh [default: by the name's extension]
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    pub(crate) format: Option<ShapeFormat>,
+}
+
+/// A format that meshes are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ShapeFormat {
+    Ply,
+    Obj,
+    Stl,
+    Off,
+}
+
+impl ShapeFormat {
+    /// The extension of its files.
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Stl => "stl",
+            Self::Off => "off",
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MeasureArgs {
+    #[command(flatten)]
+    pub(crate) mesh: MeshArgs,
+    /// The points: a PLY, XYZ, CSV, NPY, JSON or OBJ file from any tool, or `-` for stdin
+    #[arg(value_name = "POINTS")]
+    pub(crate) points: PathBuf,
+    /// The format of the points [default: told by their content, then by the name]
+    #[arg(long, value_name = "FORMAT", value_parser = point_formats())]
+    pub(crate) points_format: Option<PointFormat>,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    #[command(flatten)]
+    pub(crate) mesh: MeshArgs,
+    /// How many points, one table row a method for each
+    #[arg(short = 'n', long = "count", value_name = "N,...", value_delimiter = ',', default_value = "56,335,1000",
+        value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) counts: Vec<u32>,
+    /// The methods [default: all that work on the mesh]
+    #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) methods: Option<Vec<Method>>,
+    /// How many seeds, from --seed on; more than one give the spread
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) seeds: u32,
+    /// Compare with points from a file of another tool; may be given several times
+    #[arg(long, value_name = "NAME=FILE")]
+    pub(crate) points: Vec<PointsOf>,
+    #[command(flatten)]
+    pub(crate) sequence: SequenceArgs,
+    #[command(flatten)]
+    pub(crate) segment: SegmentArgs,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Draw the errors against the number of points, as SVG
+    #[arg(long, value_name = "OUT.svg")]
+    pub(crate) plot: Option<PathBuf>,
+}
+
+/// A point file and what it is called.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct PointsOf {
+    pub(crate) name: String,
+    pub(crate) path: PathBuf,
+}
+
+impl FromStr for PointsOf {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((name, path)) if !name.is_empty() && !path.is_empty() => {
+                Ok(Self { name: name.to_owned(), path: path.into() })
+            }
+            _ => Err("must be NAME=FILE".to_owned()),
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    #[command(flatten)]
+    pub(crate) mesh: MeshArgs,
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+fn point_formats() -> impl TypedValueParser<Value = PointFormat> {
+    PossibleValuesParser::new(PointFormat::ALL.map(PointFormat::name))
+        .try_map(|name| PointFormat::from_name(&name).ok_or("no such format"))
+}
+
+fn shapes() -> impl TypedValueParser<Value = Shape> {
+    PossibleValuesParser::new(Shape::ALL.map(Shape::name)).try_map(|name| name.parse::<Shape>())
+}
+
+/// A number above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text, |x| x > 0.0, "above 0")
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    finite(text, |x| (0.0..=1.0).contains(&x), "from 0 to 1")
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    finite(text, |x| (0.0..=180.0).contains(&x), "from 0 to 180")
+}
+
+fn finite(text: &str, allowed: impl Fn(f64) -> bool, range: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() && allowed(x) => Ok(x),
+        Ok(_) => Err(format!("must be a finite number {range}")),
+        Err(_) => Err(format!("not a number; must be a finite number {range}")),
+    }
+}

@@ -1,0 +1,13 @@
+//! One file a command: from its arguments to its outputs.
+
+pub(crate) mod compare;
+pub(crate) mod info;
+pub(crate) mod measure;
+pub(crate) mod shape;
+pub(crate) mod strips;
+pub(crate) mod wrap;
+
+/// `1 point`, `2 points`.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}

@@ -1,0 +1,102 @@
+//! `wrap`: points on a mesh.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use ldwrap::correct::Correction;
+use ldwrap::irregularity::Irregularity;
+use ldwrap::pipeline::{self, Options, Run};
+use ldwrap::{Progress, SurfacePoint};
+
+use crate::args::WrapArgs;
+use crate::commands::counted;
+use crate::exit::Outcome;
+use crate::input::{self, Input};
+use crate::job::{self, WrapOutputs};
+use crate::output::Outputs;
+use crate::picture::{PreviewOptions, preview_png, strips_svg};
+use crate::points;
+use crate::progress::Stages;
+use crate::quality::Judge;
+use crate::report::{self, MeshReport, Report};
+
+/// Runs the command.
+pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
+    let options = job::options(args)?;
+    let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
+    let stages = Stages::new(quiet);
+    let input = input::read(&args.mesh, &stages)?;
+    for note in input::notes(&input.repaired) {
+        stages.say(&format!("note: {}: {note}", input.name));
+    }
+    let run = pipeline::run(&input.mesh, &options, &stages).with_context(|| input.name.clone())?;
+    let files = write(&input, &options, &run, &outputs, &stages)?;
+    for line in summary(&input, &run) {
+        stages.say(&line);
+    }
+    for file in files {
+        stages.say(&format!("wrote {}", file.display()));
+    }
+    Ok(())
+}
+
+fn write(
+    input: &Input,
+    options: &Options,
+    run: &Run,
+    wanted: &WrapOutputs,
+    stages: &Stages,
+) -> anyhow::Result<Vec<PathBuf>> {
+    let Input { mesh, repaired, .. } = input;
+    let mut outputs = Outputs::default();
+    if wanted.strips.is_some() || wanted.preview.is_some() {
+        stages.begin("draw", 0);
+    }
+    if let Some(destination) = &wanted.strips {
+        let svg = strips_svg(&run.strips, &run.domain, &run.samples, options.tolerance * run.d_m);
+        outputs.stage(destination, svg.into_bytes())?;
+    }
+    if let Some(destination) = &wanted.preview {
+        outputs
+            .stage(destination, preview_png(mesh, &run.strips, &run.samples, &PreviewOptions::default()))?;
+    }
+    if let Some(wanted) = &wanted.points {
+        stages.begin("write", 0);
+        outputs.stage(&wanted.destination, points::bytes(mesh, &run.samples, wanted.format)?)?;
+    }
+    let quality = wanted.quality.then(|| {
+        let points: Vec<SurfacePoint> = run.samples.iter().map(|sample| sample.point).collect();
+        Judge::new(mesh, points.len(), stages).quality(&points, stages)
+    });
+    let seconds = stages.finish();
+    if let Some(destination) = &wanted.report {
+        let report = Report::new(MeshReport::new(mesh, repaired), options, run, quality, seconds);
+        outputs.stage(destination, report::json(&report)?)?;
+    }
+    outputs.commit()
+}
+
+fn summary(input: &Input, run: &Run) -> Vec<String> {
+    let Input { name, mesh, .. } = input;
+    let Irregularity { bound, refined, exact } = run.irregularity;
+    let Correction { projected, removed } = run.correction;
+    let count = run.samples.len();
+    let mut lines = vec![
+        format!(
+            "{name}: {} on {} in {}, mean distance {:.4e}",
+            counted(count, "point"),
+            counted(mesh.face_count(), "triangle"),
+            counted(run.strips.strips.len(), "strip"),
+            run.d_m
+        ),
+        format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact"),
+        format!("corrected: {projected} projected, {removed} removed"),
+    ];
+    if let Some(equalize) = &run.equalize {
+        lines.push(format!(
+            "equalized: spread of areas {:.3} before, {:.3} after; moved {:.3} mean distances",
+            equalize.spread_before, equalize.spread_after, equalize.moved
+        ));
+    }
+    lines
+}

@@ -1,0 +1,129 @@
+//! The mesh that is worked on: from a file or stdin to a checked surface.
+
+use std::fs;
+use std::io::{Read, stdin as standard_input};
+use std::path::{Component, Path};
+
+use anyhow::{Context, anyhow};
+use ldwrap::io::{self, ReadError, Resolver, read_mesh};
+use ldwrap::{CheckOptions, PolygonSoup, Progress, RepairReport, SurfaceMesh};
+
+use crate::args::{MeshArgs, MeshFormatArg};
+
+/// A checked mesh and what had to be done to it.
+pub(crate) struct Input {
+    /// What messages call it.
+    pub(crate) name: String,
+    pub(crate) mesh: SurfaceMesh,
+    pub(crate) repaired: RepairReport,
+}
+
+/// Reads and checks a mesh; `progress` hears the stages `read` and `check`.
+pub(crate) fn read(args: &MeshArgs, progress: &dyn Progress) -> anyhow::Result<Input> {
+    let stdin = args.mesh.as_os_str() == "-";
+    let name = if stdin { "stdin".to_owned() } else { args.mesh.display().to_string() };
+    progress.begin("read", 1);
+    let bytes = bytes(&args.mesh, stdin).with_context(|| name.clone())?;
+    let folder = if stdin { None } else { args.mesh.parent() };
+    let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
+    let soup = match args.mesh_format {
+        Some(format) => read_as(format, &bytes, &resolver),
+        None => read_mesh(&bytes, Some(&name), &resolver),
+    };
+    let soup = soup.with_context(|| name.clone())?;
+    drop(bytes);
+    progress.begin("check", 1);
+    let options = CheckOptions { turn_outward: !args.keep_winding };
+    let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
+    Ok(Input { name, mesh, repaired })
+}
+
+fn read_as(format: MeshFormatArg, bytes: &[u8], resolver: &Resolver<'_>) -> Result<PolygonSoup, ReadError> {
+    match format {
+        MeshFormatArg::Ply => io::ply::read(bytes),
+        MeshFormatArg::Obj => io::obj::read(bytes),
+        MeshFormatArg::Stl => io::stl::read(bytes),
+        MeshFormatArg::Gltf => io::gltf::read(bytes, resolver),
+        MeshFormatArg::Off => io::off::read(bytes),
+    }
+}
+
+/// A file that a mesh names: only one in the mesh's own folder or below it, whatever the mesh says.
+fn beside(folder: &Path, file: &str) -> Result<Vec<u8>, String> {
+    let inside = Path::new(file).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    if !inside {
+        return Err("it lies outside the mesh's folder".to_owned());
+    }
+    fs::read(folder.join(file)).map_err(|error| format!("it cannot be read ({error})"))
+}
+
+fn bytes(path: &Path, stdin: bool) -> anyhow::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    if stdin {
+        standard_input().lock().read_to_end(&mut bytes).context("cannot be read")?;
+    } else {
+        let found = fs::metadata(path).context("cannot be opened")?;
+        if found.is_dir() {
+            return Err(anyhow!("is a folder; name a mesh file in it"));
+        }
+        bytes = fs::read(path).context("cannot be read")?;
+    }
+    if bytes.is_empty() {
+        return Err(anyhow!("is empty: there is no mesh in it"));
+    }
+    Ok(bytes)
+}
+
+/// What checking did, one line for each kind of repair.
+pub(crate) fn notes(repaired: &RepairReport) -> Vec<String> {
+    let r = repaired;
+    let notes = [
+        (
+            r.welded_vertices,
+            "vertex welded to another at the same position",
+            "vertices welded to others at the same position",
+        ),
+        (r.isolated_vertices, "vertex left out: no face uses it", "vertices left out: no face uses them"),
+        (
+            r.degenerate_polygons,
+            "polygon left out: fewer than three different corners",
+            "polygons left out: fewer than three different corners",
+        ),
+        (
+            r.polygons_triangulated,
+            "polygon with more than three corners cut into triangles",
+            "polygons with more than three corners cut into triangles",
+        ),
+        (
+            r.fanned_polygons,
+            "of these cut as a fan: it crosses itself or has no area",
+            "of these cut as fans: they cross themselves or have no area",
+        ),
+        (r.zero_area_faces, "triangle left out: its area is zero", "triangles left out: their area is zero"),
+        (
+            r.duplicate_faces,
+            "triangle left out: another has the same corners",
+            "triangles left out: others have the same corners",
+        ),
+        (
+            r.non_manifold_edges,
+            "edge of more than two triangles made a border",
+            "edges of more than two triangles made borders",
+        ),
+        (
+            r.inconsistent_edges,
+            "edge between triangles wound against each other made a border",
+            "edges between triangles wound against each other made borders",
+        ),
+        (
+            r.turned_components,
+            "closed component was wound inward and is turned outward",
+            "closed components were wound inward and are turned outward",
+        ),
+    ];
+    notes
+        .into_iter()
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, one, many)| format!("{count} {}", if count == 1 { one } else { many }))
+        .collect()
+}

@@ -1,0 +1,148 @@
+//! What is to be done: the command line, checked.
+
+use std::path::Path;
+
+use ldwrap::equalize::EqualizeOptions;
+use ldwrap::io::points::PointFormat;
+use ldwrap::pipeline::{Options, Request};
+use ldwrap::segment::{GrowthOrder, SegmentOptions};
+use ldwrap::sequence::Sequence;
+
+use crate::args::{GrowthArg, RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs};
+use crate::exit::{Failure, Outcome};
+use crate::output::{Destination, Targets};
+
+/// The points of a `wrap` run: where they go, in which format.
+#[derive(Clone, Debug)]
+pub(crate) struct PointOutput {
+    pub(crate) destination: Destination,
+    pub(crate) format: PointFormat,
+}
+
+/// Where the results of `wrap` go.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WrapOutputs {
+    pub(crate) points: Option<PointOutput>,
+    pub(crate) strips: Option<Destination>,
+    pub(crate) report: Option<Destination>,
+    pub(crate) preview: Option<Destination>,
+    /// Whether the report says how good the points are.
+    pub(crate) quality: bool,
+}
+
+impl WrapOutputs {
+    /// Checks the outputs against one another and against the file that is read.
+    pub(crate) fn new(args: &WrapOutputArgs, input: &Path) -> Outcome<Self> {
+        let mut targets = Targets::default();
+        let points = args.output.as_deref().map(|path| point_output(path, args.format, &mut targets));
+        let outputs = Self {
+            points: points.transpose()?,
+            strips: args.strips.as_deref().map(|path| targets.add("--strips", path)),
+            report: args.report.as_deref().map(|path| targets.add("--report", path)),
+            preview: args.preview.as_deref().map(|path| targets.add("--preview", path)),
+            quality: args.quality,
+        };
+        targets.check(Some(input))?;
+        Ok(outputs)
+    }
+}
+
+fn point_output(path: &Path, format: Option<PointFormat>, targets: &mut Targets) -> Outcome<PointOutput> {
+    let destination = targets.add("--output", path);
+    let format = match (format, &destination) {
+        (Some(format), _) => format,
+        (None, Destination::Stdout) => {
+            return Err(Failure::wrong_use(
+                "points on stdout need a format: add --format ply, ply-ascii, xyz, csv, npy, json or obj",
+            ));
+        }
+        (None, Destination::File(path)) => point_format(path)?,
+    };
+    Ok(PointOutput { destination, format })
+}
+
+/// The format that a file's name stands for.
+fn point_format(path: &Path) -> Outcome<PointFormat> {
+    let extension = path.extension().map(|extension| extension.to_string_lossy());
+    extension.as_deref().and_then(PointFormat::from_name).ok_or_else(|| {
+        let what = extension.as_deref().map_or("no extension".to_owned(), |e| format!("the extension .{e}"));
+        Failure::wrong_use(format!(
+            "{}: no point format has {what}: known are .ply, .xyz, .csv, .npy, .json and .obj; or choose one with \
+             --format",
+            path.display()
+        ))
+    })
+}
+
+/// Everything that decides the points.
+pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
+    Ok(Options {
+        request: request(&args.request),
+        equalize: (!args.no_equalize).then(EqualizeOptions::default),
+        ..wrap_options(&args.segment, &args.sequence)?
+    })
+}
+
+/// How points are wrapped, whatever their number.
+pub(crate) fn wrap_options(segment: &SegmentArgs, points: &SequenceArgs) -> Outcome<Options> {
+    let (sequence, seed) = sequence(points)?;
+    Ok(Options {
+        segment: segment_options(segment),
+        sequence,
+        seed,
+        tolerance: points.tolerance,
+        ..Options::default()
+    })
+}
+
+fn request(args: &RequestArgs) -> Request {
+    let RequestArgs { count, density, spacing, irregularity } = *args;
+    count
+        .map(|n| Request::Count(n as usize))
+        .or(density.map(Request::Density))
+        .or(spacing.map(Request::Spacing))
+        .or(irregularity.map(Request::Irregularity))
+        .unwrap_or(Options::default().request)
+}
+
+/// How the surface is cut: what was not given has the library's default.
+pub(crate) fn segment_options(args: &SegmentArgs) -> SegmentOptions {
+    let default = SegmentOptions::default();
+    SegmentOptions {
+        flatness_angle: args.flatness_angle.map_or(default.flatness_angle, f64::to_radians),
+        smallest_share: args.smallest_share.unwrap_or(default.smallest_share),
+        order: args.growth.map_or(default.order, growth_order),
+    }
+}
+
+fn growth_order(arg: GrowthArg) -> GrowthOrder {
+    match arg {
+        GrowthArg::BoundaryWalk => GrowthOrder::BoundaryWalk,
+        GrowthArg::FlattestFirst => GrowthOrder::FlattestFirst,
+        GrowthArg::LongestFirst => GrowthOrder::LongestFirst,
+    }
+}
+
+fn sequence(args: &SequenceArgs) -> Outcome<(Sequence, u64)> {
+    let (sequence, seed) = match (args.sequence, args.bases.as_deref()) {
+        (SequenceArg::Hammersley, None) => (Sequence::Hammersley { base: 2 }, args.seed),
+        (SequenceArg::Hammersley, Some(&[base])) => (Sequence::Hammersley { base }, args.seed),
+        (SequenceArg::Hammersley, Some(_)) => {
+            return Err(Failure::wrong_use("--sequence hammersley has one base: give --bases A"));
+        }
+        (SequenceArg::Halton, None) => (Sequence::Halton { bases: [2, 3] }, args.seed),
+        (SequenceArg::Halton, Some(&[a, b])) => (Sequence::Halton { bases: [a, b] }, args.seed),
+        (SequenceArg::Halton, Some(_)) => {
+            return Err(Failure::wrong_use("--sequence halton has two bases: give --bases A,B"));
+        }
+        // A seed scrambles Sobol' points anew, which is better than shifting them.
+        (SequenceArg::Sobol, None) => (Sequence::Sobol { seed: args.seed }, 0),
+        (SequenceArg::R2, None) => (Sequence::R2, args.seed),
+        (SequenceArg::Fibonacci, None) => (Sequence::Fibonacci, args.seed),
+        (SequenceArg::Sobol | SequenceArg::R2 | SequenceArg::Fibonacci, Some(_)) => {
+            return Err(Failure::wrong_use("--bases: only hammersley and halton have bases"));
+        }
+    };
+    sequence.validate().map_err(|error| Failure::wrong_use(format!("--bases: {error}")))?;
+    Ok((sequence, seed))
+}

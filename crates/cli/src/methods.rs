@@ -1,0 +1,84 @@
+//! The methods that `compare` compares: a mesh, a number and a seed in, points out.
+
+use anyhow::anyhow;
+use clap::ValueEnum;
+use ldwrap::baseline::Baseline;
+use ldwrap::equalize::EqualizeOptions;
+use ldwrap::pipeline::{self, Options, Request};
+use ldwrap::{Progress, SurfaceMesh, SurfacePoint};
+
+/// A way to make points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Method {
+    /// The paper's method: segment, unfold, wrap, correct
+    Wrap,
+    /// The paper's method, then equalized
+    Equalize,
+    /// Independent uniform points
+    Random,
+    /// Triangles along a Hilbert curve, the sum of areas inverted at equal steps
+    Hilbert,
+    /// Poisson disk by sample elimination
+    Poisson,
+    /// On a sphere: Hammersley in spherical coordinates
+    SphereHammersley,
+    /// On a sphere: spherical Fibonacci lattice
+    SphereFibonacci,
+}
+
+impl Method {
+    /// All of them.
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Wrap,
+        Self::Equalize,
+        Self::Random,
+        Self::Hilbert,
+        Self::Poisson,
+        Self::SphereHammersley,
+        Self::SphereFibonacci,
+    ];
+
+    /// Its name as it is typed.
+    pub(crate) fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+    }
+
+    /// Whether it works on the mesh: lattices on the sphere need one.
+    pub(crate) fn suits(self, mesh: &SurfaceMesh) -> bool {
+        let sphere = |baseline: Baseline| baseline.place(mesh, 1, 0).is_ok();
+        match self {
+            Self::SphereHammersley => sphere(Baseline::SphereHammersley),
+            Self::SphereFibonacci => sphere(Baseline::SphereFibonacci),
+            Self::Wrap | Self::Equalize | Self::Random | Self::Hilbert | Self::Poisson => true,
+        }
+    }
+
+    /// Makes `count` points. `options` say how to wrap; their request, seed and equalizing are replaced.
+    pub(crate) fn place(
+        self,
+        mesh: &SurfaceMesh,
+        count: usize,
+        seed: u64,
+        options: &Options,
+        progress: &dyn Progress,
+    ) -> anyhow::Result<Vec<SurfacePoint>> {
+        let wrapped = |equalize| {
+            let options = Options { request: Request::Count(count), seed, equalize, ..*options };
+            let run = pipeline::run(mesh, &options, progress)?;
+            anyhow::Ok(run.samples.iter().map(|sample| sample.point).collect())
+        };
+        let baseline = |baseline: Baseline| {
+            progress.begin("place", 1);
+            baseline.place(mesh, count, seed).map_err(|error| anyhow!(error))
+        };
+        match self {
+            Self::Wrap => wrapped(None),
+            Self::Equalize => wrapped(Some(EqualizeOptions::default())),
+            Self::Random => baseline(Baseline::Random),
+            Self::Hilbert => baseline(Baseline::Hilbert),
+            Self::Poisson => baseline(Baseline::Poisson),
+            Self::SphereHammersley => baseline(Baseline::SphereHammersley),
+            Self::SphereFibonacci => baseline(Baseline::SphereFibonacci),
+        }
+    }
+}

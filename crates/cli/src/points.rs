@@ -1,0 +1,87 @@
+//! Point files: samples out, anybody's points in.
+
+use std::io::Read;
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use ldwrap::io::points::{PointFormat, PointRow, read_points, write_points};
+use ldwrap::spatial::nearest;
+use ldwrap::{Progress, Sample, SurfaceMesh, SurfacePoint};
+use serde::Serialize;
+
+/// Points nearer to the surface than this share of the mesh's size are on it: rounding to single precision.
+const ON_SURFACE: f64 = 1e-6;
+
+/// Samples as a file.
+pub(crate) fn bytes(mesh: &SurfaceMesh, samples: &[Sample], format: PointFormat) -> anyhow::Result<Vec<u8>> {
+    let rows: Vec<PointRow> = samples.iter().map(|sample| PointRow::new(mesh, sample)).collect();
+    let mut bytes = Vec::new();
+    write_points(format, &rows, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Points from a file, each at the nearest place of a mesh.
+pub(crate) struct Placed {
+    /// What messages call the file.
+    pub(crate) name: String,
+    pub(crate) points: Vec<SurfacePoint>,
+    pub(crate) off_surface: OffSurface,
+}
+
+/// How far points lie from the surface, in units of the mesh.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct OffSurface {
+    /// How many are farther away than a millionth of the diagonal of the box around the mesh.
+    pub(crate) count: usize,
+    /// The largest distance of all points.
+    pub(crate) max: f64,
+    /// The mean distance of all points.
+    pub(crate) mean: f64,
+}
+
+/// Reads points and finds their nearest places on the mesh; `progress` hears `read points` and `project`.
+pub(crate) fn read(
+    mesh: &SurfaceMesh,
+    path: &Path,
+    format: Option<PointFormat>,
+    progress: &dyn Progress,
+) -> anyhow::Result<Placed> {
+    let stdin = path.as_os_str() == "-";
+    let name = if stdin { "stdin".to_owned() } else { path.display().to_string() };
+    progress.begin("read points", 1);
+    let bytes = if stdin {
+        let mut bytes = Vec::new();
+        std::io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes).context("cannot be read")
+    } else if path.is_dir() {
+        Err(anyhow!("is a folder; name a point file in it"))
+    } else {
+        std::fs::read(path).context("cannot be read")
+    };
+    let bytes = bytes.with_context(|| name.clone())?;
+    let format_name = format.map_or_else(|| name.clone(), |format| format!("{name}.{}", format.name()));
+    let places = read_points(&bytes, &format_name).with_context(|| name.clone())?;
+    progress.begin("project", 1);
+    let projected = nearest(mesh, &places);
+    let limit = ON_SURFACE * mesh.diagonal();
+    let off_surface = OffSurface {
+        count: projected.iter().filter(|p| p.distance > limit).count(),
+        max: projected.iter().fold(0.0, |max, p| p.distance.max(max)),
+        mean: projected.iter().map(|p| p.distance).sum::<f64>() / projected.len() as f64,
+    };
+    Ok(Placed { name, points: projected.iter().map(|p| p.point).collect(), off_surface })
+}
+
+impl Placed {
+    /// A line about points that are not on the surface; none if all are.
+    pub(crate) fn note(&self) -> Option<String> {
+        let OffSurface { count, max, mean } = self.off_surface;
+        (count > 0).then(|| {
+            format!(
+                "note: {}: {count} of {} points lie off the surface (farthest {max:.3e}, on average {mean:.3e}): \
+                 the nearest places are measured",
+                self.name,
+                self.points.len()
+            )
+        })
+    }
+}

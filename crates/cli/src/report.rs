@@ -1,0 +1,145 @@
+//! The report of a run as JSON. Its keys and units are documented in this crate's README and stay as they are.
+
+use ldwrap::equalize::EqualizeReport;
+use ldwrap::irregularity::Irregularity;
+use ldwrap::pipeline::{Options, Request, Run};
+use ldwrap::segment::GrowthOrder;
+use ldwrap::sequence::Sequence;
+use ldwrap::unfold::Strip;
+use ldwrap::{RepairReport, SurfaceMesh};
+use serde::Serialize;
+
+use crate::progress::Seconds;
+use crate::quality::Quality;
+
+/// What `wrap --report` writes.
+#[derive(Serialize)]
+pub(crate) struct Report<'a> {
+    version: &'static str,
+    options: OptionsReport,
+    mesh: MeshReport<'a>,
+    strips: Vec<StripReport>,
+    points: PointsReport,
+    irregularity: Irregularity,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    equalize: Option<EqualizeReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    quality: Option<Quality>,
+    seconds: Seconds,
+}
+
+#[derive(Serialize)]
+struct OptionsReport {
+    request: Request,
+    sequence: Sequence,
+    seed: u64,
+    tolerance: f64,
+    flatness_angle: f64,
+    smallest_share: f64,
+    growth: GrowthOrder,
+    equalize: bool,
+}
+
+/// What a mesh is; `info --json` prints this.
+#[derive(Serialize)]
+pub(crate) struct MeshReport<'a> {
+    pub(crate) vertices: usize,
+    pub(crate) faces: usize,
+    pub(crate) components: usize,
+    pub(crate) border_edges: usize,
+    pub(crate) area: f64,
+    pub(crate) repaired: &'a RepairReport,
+}
+
+#[derive(Serialize)]
+struct StripReport {
+    faces: usize,
+    area: f64,
+    border_length: f64,
+    open_border_length: f64,
+}
+
+#[derive(Serialize)]
+struct PointsReport {
+    count: usize,
+    d_m: f64,
+    projected: usize,
+    removed: usize,
+}
+
+impl<'a> Report<'a> {
+    /// Puts together what `run` did with `options` in `seconds`, and how good its points are if that was asked for.
+    pub(crate) fn new(
+        mesh: MeshReport<'a>,
+        options: &Options,
+        run: &Run,
+        quality: Option<Quality>,
+        seconds: Seconds,
+    ) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            options: OptionsReport {
+                request: options.request,
+                sequence: options.sequence,
+                seed: options.seed,
+                tolerance: options.tolerance,
+                flatness_angle: options.segment.flatness_angle.to_degrees(),
+                smallest_share: options.segment.smallest_share,
+                growth: options.segment.order,
+                equalize: options.equalize.is_some(),
+            },
+            mesh,
+            strips: run
+                .strips
+                .strips
+                .iter()
+                .map(|strip| strip_report(strip, options.tolerance * run.d_m))
+                .collect(),
+            points: PointsReport {
+                count: run.samples.len(),
+                d_m: run.d_m,
+                projected: run.correction.projected,
+                removed: run.correction.removed,
+            },
+            irregularity: run.irregularity,
+            equalize: run.equalize,
+            quality,
+            seconds,
+        }
+    }
+}
+
+impl<'a> MeshReport<'a> {
+    /// Counts a mesh.
+    pub(crate) fn new(mesh: &SurfaceMesh, repaired: &'a RepairReport) -> Self {
+        let topology = mesh.topology();
+        Self {
+            vertices: mesh.vertex_count(),
+            faces: mesh.face_count(),
+            components: topology.components().count,
+            border_edges: topology.border_edge_count(),
+            area: mesh.area(),
+            repaired,
+        }
+    }
+}
+
+fn strip_report(strip: &Strip, tolerance: f64) -> StripReport {
+    let length = |open_only: bool| {
+        let counted = strip.border.iter().filter(|edge| !open_only || strip.is_open(edge, tolerance));
+        counted.map(|edge| strip.border_length(edge)).sum()
+    };
+    StripReport {
+        faces: strip.faces.len(),
+        area: strip.area,
+        border_length: length(false),
+        open_border_length: length(true),
+    }
+}
+
+/// A value as indented JSON that ends in a newline.
+pub(crate) fn json(value: &impl Serialize) -> serde_json::Result<Vec<u8>> {
+    let mut bytes = serde_json::to_vec_pretty(value)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}

@@ -1,0 +1,140 @@
+//! Meshes that cannot be used: exit code 1, one line that names the file and what is wrong, and no output.
+
+use crate::common::{Folder, OCTAHEDRON};
+
+/// Wraps a file with this content and expects a failure that names the file and `words`.
+#[track_caller]
+fn rejected(name: &str, content: impl AsRef<[u8]>, words: &[&str]) {
+    let folder = Folder::new();
+    folder.write(name, content);
+    folder.run(&format!("wrap {name} -n 10 -o points.xyz --report report.json")).failed(&[name]).says(words);
+    assert_eq!(folder.names(), [name]);
+    folder.run(&format!("info {name}")).failed(&[name]).says(words);
+}
+
+#[test]
+fn a_missing_file() {
+    let folder = Folder::new();
+    folder.run("wrap horse.ply -o p.xyz").failed(&["horse.ply", "No such file"]);
+    folder.run("info horse.ply").failed(&["horse.ply", "No such file"]);
+    folder.run("strips horse.ply -o s.svg").failed(&["horse.ply", "No such file"]);
+}
+
+#[test]
+fn a_folder() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("meshes.obj")).expect("a folder");
+    folder.run("wrap meshes.obj -o p.xyz").failed(&["meshes.obj", "is a folder"]);
+}
+
+#[test]
+fn an_empty_file() {
+    for name in ["a.obj", "a.ply", "a.stl", "a.gltf", "a.glb"] {
+        rejected(name, "", &["empty"]);
+    }
+}
+
+#[test]
+fn an_unknown_format() {
+    rejected("a.docx", "PK\x03\x04 a letter", &["known format", "PLY"]);
+}
+
+#[test]
+fn another_format_than_it_is_said_to_be() {
+    let folder = Folder::with_octahedron();
+    for format in ["ply", "stl", "gltf", "off"] {
+        folder.run(&format!("wrap octahedron.obj --mesh-format {format}")).failed(&["octahedron.obj"]);
+    }
+    folder.run("wrap octahedron.obj --mesh-format nonsense").refused(&["--mesh-format"]);
+}
+
+#[test]
+fn the_content_counts_more_than_the_name() {
+    let folder = Folder::new();
+    folder.write("a.ply", OCTAHEDRON);
+    folder.run("info a.ply").ok();
+}
+
+#[test]
+fn a_buffer_outside_the_folder_is_not_read() {
+    let gltf = |uri: &str| {
+        format!(
+            r#"{{"asset": {{"version": "2.0"}}, "buffers": [{{"byteLength": 36, "uri": "{uri}"}}],
+            "bufferViews": [{{"buffer": 0, "byteLength": 36}}],
+            "accessors": [{{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 1, 0]}}],
+            "meshes": [{{"primitives": [{{"attributes": {{"POSITION": 0}}}}]}}],
+            "nodes": [{{"mesh": 0}}], "scenes": [{{"nodes": [0]}}], "scene": 0}}"#
+        )
+    };
+    let corners = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let bytes: Vec<u8> = corners.iter().flat_map(|x| x.to_le_bytes()).collect();
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("sub")).expect("a folder");
+    folder.write("out.bin", &bytes);
+    folder.write("sub/in.bin", &bytes);
+    folder.write("good.gltf", gltf("sub/in.bin"));
+    assert_eq!(folder.run("info good.gltf --json").ok().json()["faces"], 1);
+    folder.write("missing.gltf", gltf("sub/none.bin"));
+    folder.run("info missing.gltf").failed(&["missing.gltf", "sub/none.bin"]);
+    folder.write("sub/bad.gltf", gltf("../out.bin"));
+    folder.run("info sub/bad.gltf").failed(&["sub/bad.gltf", "../out.bin", "outside"]);
+}
+
+#[test]
+fn not_text_at_all() {
+    let noise: Vec<u8> = (0..2000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    for name in ["a.obj", "a.ply", "a.stl", "a.gltf", "a.glb"] {
+        rejected(name, &noise, &[]);
+    }
+}
+
+#[test]
+fn a_coordinate_that_is_no_number() {
+    rejected("a.obj", OCTAHEDRON.replace("v 0 1 0", "v 0 nan 0"), &[]);
+    rejected("a.obj", OCTAHEDRON.replace("v 0 1 0", "v 0 inf 0"), &[]);
+    rejected("a.obj", OCTAHEDRON.replace("v 0 1 0", "v 0 one 0"), &[]);
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n";
+    rejected("a.ply", ply, &[]);
+}
+
+#[test]
+fn an_index_out_of_range() {
+    rejected("a.obj", OCTAHEDRON.replace("f 1 4 6", "f 1 4 77"), &[]);
+    rejected("a.obj", OCTAHEDRON.replace("f 1 4 6", "f 1 4 0"), &[]);
+}
+
+#[test]
+fn no_face_and_no_area() {
+    rejected("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", &["face"]);
+    rejected("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", &["area"]);
+}
+
+#[test]
+fn a_truncated_file() {
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let mut ply = header.as_bytes().to_vec();
+    for x in [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        ply.extend(x.to_le_bytes());
+    }
+    rejected("short.ply", &ply[..ply.len() - 5], &[]);
+    rejected("no-face.ply", &ply, &[]);
+    rejected("header.ply", &header.as_bytes()[..60], &[]);
+    rejected("short.stl", [&[0u8; 80][..], &7u32.to_le_bytes(), &[0; 60]].concat(), &[]);
+    rejected("short.glb", b"glTF\x02\0\0\0\xff\0\0\0", &[]);
+}
+
+#[test]
+fn a_header_that_promises_too_much() {
+    let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n\
+        property float z\nelement face 4000000000\nproperty list uchar int vertex_indices\nend_header\n";
+    rejected("huge.ply", ply, &[]);
+    rejected("huge.stl", [&[0u8; 80][..], &u32::MAX.to_le_bytes(), &[0; 100]].concat(), &[]);
+}
+
+#[test]
+fn quiet_still_tells_errors() {
+    Folder::new().run("wrap horse.ply --quiet").failed(&["horse.ply"]);
+}

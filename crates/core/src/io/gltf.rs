@@ -1,0 +1,211 @@
+//! Reads the triangles of glTF 2.0 scenes, with `gltf`.
+
+mod accessor;
+mod buffers;
+
+use std::collections::BTreeMap;
+
+use glam::{DAffine3, DMat4, DQuat, DVec3};
+use gltf::mesh::{Mode, Primitive};
+use gltf::{Document, Gltf, Node, Semantic};
+
+use crate::io::detect::MeshFormat;
+use crate::io::read::{Place, ReadError, Resolver, brief, push_polygon};
+use crate::mesh::PolygonSoup;
+use buffers::Buffers;
+
+/// How many vertices and corners a scene may have: a few bytes can ask for the same mesh a million times.
+const LARGEST: usize = 1 << 28;
+
+/// Extensions that may be required because they do not change the shape, or are understood.
+const HARMLESS: [&str; 7] = [
+    "KHR_mesh_quantization",
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "KHR_xmp",
+    "EXT_texture_",
+    "MSFT_texture_",
+];
+
+/// Reads a `.gltf` or `.glb` file: all triangles, strips and fans of the default scene (of the first if none is
+/// the default, of all nodes if there is no scene), placed by their nodes' transforms; a mirroring transform turns
+/// the triangles so that they keep their outside. Points and lines are passed over; skins and morph targets stay
+/// at rest. Every node that shows a mesh adds its vertices again.
+///
+/// `resolver` gets the addresses of buffers that are not embedded, with `%20` and the like decoded.
+///
+/// # Errors
+/// [`ReadError`]: with the part of the document.
+pub fn read(bytes: &[u8], resolver: &Resolver<'_>) -> Result<PolygonSoup, ReadError> {
+    let (document, blob) = parse(bytes)?;
+    let buffers = Buffers::load(&document, blob, resolver)?;
+    let mut soup = PolygonSoup::default();
+    let mut seen = vec![false; document.nodes().len()];
+    // Children are put on the stack in reverse: parts come in the order of the file.
+    let mut stack: Vec<(Node<'_>, DAffine3)> =
+        roots(&document).into_iter().rev().map(|n| (n, DAffine3::IDENTITY)).collect();
+    while let Some((node, parent)) = stack.pop() {
+        if std::mem::replace(&mut seen[node.index()], true) {
+            return Err(malformed(
+                Place::Item("node", node.index()),
+                "it has two parents, or is its own ancestor".into(),
+            ));
+        }
+        let transform = parent * local(&node);
+        if let Some(mesh) = node.mesh() {
+            add_mesh(&mut soup, &mesh, transform, &buffers)?;
+        }
+        let children: Vec<_> = node.children().map(|child| (child, transform)).collect();
+        stack.extend(children.into_iter().rev());
+    }
+    Ok(soup)
+}
+
+/// The checked document and the binary chunk.
+fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
+    use gltf::json::validation::{Error, Validate};
+    if bytes.starts_with(b"glTF") {
+        let length = bytes.get(8..12).map(|l| u32::from_le_bytes([l[0], l[1], l[2], l[3]]) as usize);
+        if length.is_none_or(|length| length < 20 || length > bytes.len()) {
+            return Err(ReadError::Truncated {
+                format: MeshFormat::Gltf,
+                place: Place::Byte(8),
+                problem: format!("the length in the head does not fit the {} bytes", bytes.len()),
+            });
+        }
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes)
+        .map_err(|error| malformed(Place::File, brief(&error.to_string())))?;
+    let root = document.as_json();
+    for extension in &root.extensions_required {
+        if !HARMLESS.iter().any(|harmless| extension.starts_with(harmless)) {
+            return Err(ReadError::Unsupported {
+                format: MeshFormat::Gltf,
+                place: Place::File,
+                what: format!("the required extension {}", brief(extension)),
+                advice: "export it without compression and extensions",
+            });
+        }
+    }
+    let mut first = None;
+    root.validate(root, gltf::json::Path::new, &mut |path, error| {
+        if first.is_some() || error == Error::Unsupported {
+            return;
+        }
+        let path = path().to_string();
+        // The box around the positions is asked for by the specification, but not needed.
+        if !(error == Error::Missing && (path.ends_with(".min") || path.ends_with(".max"))) {
+            first = Some(format!("{}: {error}", brief(&path)));
+        }
+    });
+    match first {
+        Some(problem) => Err(malformed(Place::File, problem)),
+        None => Ok((document, blob)),
+    }
+}
+
+fn roots(document: &Document) -> Vec<Node<'_>> {
+    if let Some(scene) = document.default_scene().or_else(|| document.scenes().next()) {
+        return scene.nodes().collect();
+    }
+    let mut is_child = vec![false; document.nodes().len()];
+    for child in document.nodes().flat_map(|node| node.children()) {
+        is_child[child.index()] = true;
+    }
+    document.nodes().filter(|node| !is_child[node.index()]).collect()
+}
+
+fn local(node: &Node<'_>) -> DAffine3 {
+    match node.transform() {
+        gltf::scene::Transform::Matrix { matrix } => {
+            DAffine3::from_mat4(DMat4::from_cols_array_2d(&matrix.map(|column| column.map(f64::from))))
+        }
+        gltf::scene::Transform::Decomposed { translation, rotation, scale } => {
+            // Stored in single precision, the quaternion's length is not exactly 1.
+            let rotation = DQuat::from_array(rotation.map(f64::from));
+            DAffine3::from_scale_rotation_translation(
+                DVec3::from_array(scale.map(f64::from)),
+                if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY },
+                DVec3::from_array(translation.map(f64::from)),
+            )
+        }
+    }
+}
+
+fn add_mesh(
+    soup: &mut PolygonSoup,
+    mesh: &gltf::Mesh<'_>,
+    transform: DAffine3,
+    buffers: &Buffers,
+) -> Result<(), ReadError> {
+    let turned = transform.matrix3.determinant() < 0.0;
+    // Primitives may share their positions; each accessor is added once.
+    let mut first_vertex = BTreeMap::new();
+    for primitive in mesh.primitives() {
+        let place = Place::Item("mesh", mesh.index());
+        let kept = matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan);
+        let Some(positions) = primitive.get(&Semantic::Positions).filter(|_| kept) else { continue };
+        let too_large = |what| ReadError::TooLarge { format: MeshFormat::Gltf, place, what, limit: LARGEST };
+        let count = positions.count();
+        let first = match first_vertex.get(&positions.index()) {
+            Some(&first) => first,
+            None => {
+                let first = soup.positions.len();
+                if count > LARGEST - first {
+                    return Err(too_large("vertices"));
+                }
+                let local =
+                    accessor::positions(&positions, buffers).map_err(|problem| malformed(place, problem))?;
+                soup.positions.extend(local.into_iter().map(|p| transform.transform_point3(p)));
+                first_vertex.insert(positions.index(), first);
+                first
+            }
+        };
+        let indices = match primitive.indices() {
+            Some(indices) => {
+                let indices =
+                    accessor::indices(&indices, buffers).map_err(|problem| malformed(place, problem))?;
+                if let Some(&index) = indices.iter().find(|&&index| index as usize >= count) {
+                    let problem = format!(
+                        "primitive {}: a corner is vertex {index}, but there are {count}",
+                        primitive.index()
+                    );
+                    return Err(malformed(place, problem));
+                }
+                indices
+            }
+            None => (0..count as u32).collect(),
+        };
+        if indices.len().saturating_mul(3) > LARGEST - soup.corners.len().min(LARGEST) {
+            return Err(too_large("corners"));
+        }
+        for [a, b, c] in triangles(&primitive, &indices) {
+            let triangle = if turned { [a, c, b] } else { [a, b, c] };
+            push_polygon(soup, triangle.map(|index| index + first as u32), MeshFormat::Gltf)?;
+        }
+    }
+    Ok(())
+}
+
+/// The triangles of a list, strip or fan, without those that sew strips together.
+fn triangles(primitive: &Primitive<'_>, indices: &[u32]) -> Vec<[u32; 3]> {
+    match primitive.mode() {
+        Mode::TriangleStrip => {
+            let wound =
+                |(i, w): (usize, &[u32])| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };
+            let sews = |[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
+            indices.windows(3).enumerate().map(wound).filter(|t| !sews(t)).collect()
+        }
+        Mode::TriangleFan => indices.windows(2).skip(1).map(|w| [indices[0], w[0], w[1]]).collect(),
+        _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+    }
+}
+
+fn malformed(place: Place, problem: String) -> ReadError {
+    ReadError::Malformed { format: MeshFormat::Gltf, place, problem }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,212 @@
+//! Reads the polygons of Wavefront OBJ files, with `tobj`.
+
+use std::io::{self, BufRead, Read};
+
+use glam::DVec3;
+use tobj::{LoadError, LoadOptions};
+
+use crate::io::detect::MeshFormat;
+use crate::io::read::{Place, ReadError, brief, push_polygon, text};
+use crate::mesh::PolygonSoup;
+
+/// Reads an OBJ file: all its vertices and its faces with any number of corners; relative (negative) indices and
+/// continued lines are understood. Groups, materials, lines and points are passed over.
+///
+/// # Errors
+/// [`ReadError`]: with the line.
+pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
+    let plain = plain(&text(bytes));
+    let mut lines = LineCounter { rest: plain.as_bytes(), line: 0 };
+    let options = LoadOptions { triangulate: false, ..LoadOptions::default() };
+    let (models, _) = tobj::load_obj_buf(&mut lines, &options, |_| Err(LoadError::GenericFailure))
+        // The first line is not the file's.
+        .map_err(|error| explain(error, &plain, lines.line - 1))?;
+
+    let mut soup = PolygonSoup::default();
+    // Without groups there is one model. No arities mean that all faces are triangles.
+    for mesh in models.into_iter().map(|model| model.mesh) {
+        soup.positions = mesh.positions.chunks_exact(3).map(DVec3::from_slice).collect();
+        let triangles = if mesh.face_arities.is_empty() { mesh.indices.len() / 3 } else { 0 };
+        let mut corners = mesh.indices.iter().copied();
+        let mut arities = mesh.face_arities.iter().copied().chain(std::iter::repeat_n(3, triangles));
+        let all_vertices = arities.next().unwrap_or_default();
+        corners.by_ref().take(all_vertices as usize).for_each(drop);
+        for arity in arities {
+            push_polygon(&mut soup, corners.by_ref().take(arity as usize), MeshFormat::Obj)?;
+        }
+    }
+    Ok(soup)
+}
+
+/// The same lines with nothing but positions and corners, behind a face of all vertices. The library stops at what
+/// is none of our business: colours at some of the vertices, comments behind a face, materials without a name; it
+/// takes polylines for faces; and it renumbers the vertices as faces use them, which the first face makes the order
+/// of the file.
+fn plain(text: &str) -> String {
+    let mut plain = String::with_capacity(2 * text.len());
+    let mut vertices = 0;
+    let mut lines = text.lines();
+    let mut joined = String::new();
+    while let Some(line) = lines.next() {
+        let mut line = line;
+        let mut breaks = 1;
+        if line.trim_end().ends_with('\\') {
+            joined.clear();
+            let mut next = Some(line);
+            while let Some(part) = next {
+                let part = part.trim_end();
+                joined.push_str(part.trim_end_matches('\\'));
+                joined.push(' ');
+                next = if part.ends_with('\\') { lines.next() } else { None };
+                breaks += usize::from(next.is_some());
+            }
+            line = &joined;
+        }
+        let mut words = line.split('#').next().unwrap_or_default().split_ascii_whitespace();
+        match words.next() {
+            Some("v") => {
+                vertices += 1;
+                plain.push('v');
+                for word in words.take(3) {
+                    plain.push(' ');
+                    plain.push_str(word);
+                }
+            }
+            Some("f" | "fo") => {
+                plain.push('f');
+                for word in words {
+                    plain.push(' ');
+                    // Of `position/texture/normal` the first; kept whole if there is none, for the error.
+                    plain.push_str(word.split('/').next().filter(|index| !index.is_empty()).unwrap_or(word));
+                }
+            }
+            _ => {}
+        }
+        plain.extend(std::iter::repeat_n('\n', breaks));
+    }
+    let mut all: String =
+        (1..=vertices).fold("f".into(), |all, vertex: usize| all + " " + &vertex.to_string());
+    all.push('\n');
+    plain.insert_str(0, &all);
+    plain
+}
+
+/// Bytes that know the line they are at, because the library does not.
+struct LineCounter<'a> {
+    rest: &'a [u8],
+    line: usize,
+}
+
+impl Read for LineCounter<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.rest.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&self.rest[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+}
+
+impl BufRead for LineCounter<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        Ok(self.rest)
+    }
+
+    fn consume(&mut self, count: usize) {
+        let (done, rest) = self.rest.split_at(count);
+        self.line += done.iter().filter(|&&byte| byte == b'\n').count();
+        self.rest = rest;
+    }
+}
+
+fn explain(error: LoadError, plain: &str, line: usize) -> ReadError {
+    let (place, problem) = match error {
+        LoadError::FaceVertexOutOfBounds => out_of_bounds(plain),
+        LoadError::PositionParseError => {
+            (Place::Line(line), "`v` must be followed by three numbers".to_string())
+        }
+        LoadError::FaceParseError => {
+            (Place::Line(line), "`f` must be followed by numbers of vertices".to_string())
+        }
+        error => (Place::Line(line), brief(&error.to_string())),
+    };
+    ReadError::Malformed { format: MeshFormat::Obj, place, problem }
+}
+
+/// Looks for the corner that the library complained about without saying where.
+fn out_of_bounds(plain: &str) -> (Place, String) {
+    let total = plain.lines().filter(|line| line.starts_with('v')).count();
+    let mut before = 0;
+    for (line, text) in plain.lines().enumerate().skip(1) {
+        before += usize::from(text.starts_with('v'));
+        for word in text.split_ascii_whitespace().skip(1).filter(|_| text.starts_with('f')) {
+            let index: i64 = word.parse().unwrap_or(0);
+            let vertex = if index < 0 { before as i64 + index } else { index - 1 };
+            if !(0..total as i64).contains(&vertex) {
+                let problem =
+                    format!("a corner is vertex {}, but there are {total} (they count from 1)", brief(word));
+                return (Place::Line(line), problem);
+            }
+        }
+    }
+    (Place::File, "a face has a vertex that does not exist".to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polygons_groups_and_relative_indices() {
+        let text = "# comment \u{e9}\nmtllib none.mtl\no first\nv 0 0 0\nv 1 0 0 1.0 0.5 0.25\nv 1 1 0\nv 0 1 0 1\n\
+                    vt 0 0\nvn 0 0 1\nusemtl\nf 1/1/1 2/1/1 3//1 4 # a quad\ng second\nusemtl a\nf -4 \\\n -3 -2\n\
+                    l 1 2 3\np 1\nf 3 4 5\nv 5 5 5\ns off\nvp 1 2\n";
+        let soup = read(text.as_bytes()).unwrap();
+        assert_eq!(soup.positions.len(), 5);
+        assert_eq!(soup.positions[4], DVec3::splat(5.0));
+        let polygons: Vec<&[u32]> = (0..soup.polygon_count()).map(|p| soup.polygon(p)).collect();
+        assert_eq!(polygons, [&[0, 1, 2, 3][..], &[0, 1, 2], &[2, 3, 4]]);
+        let latin = [&b"# \xe9\xff\n"[..], text.as_bytes()].concat();
+        assert_eq!(read(&latin).unwrap(), soup);
+        assert_eq!(read(text.replace('\n', "\r\n").as_bytes()).unwrap(), soup);
+    }
+
+    #[test]
+    fn double_precision_is_kept() {
+        let soup = read(b"v 0.1 1e-30 123456789.125\nv 0 0 0\nv 1 0 0\nf 1 2 3").unwrap();
+        assert_eq!(soup.positions[0], DVec3::new(0.1, 1e-30, 123_456_789.125));
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        let message = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
+        assert!(message("v 0 0 0\n\nv 0 zero 0\n").starts_with("OBJ, line 3: `v` must be followed by"));
+        assert!(message("v 0 0 0\nv 0 0\n").starts_with("OBJ, line 2"));
+        assert!(
+            message("v 0 0 0\nf 1 \\\n 1 1\nf 1 1 2\nf 1 1 7\n")
+                .contains("line 4: a corner is vertex 2, but there are 1")
+        );
+        assert!(message("v 0 0 0\nf 1 1 -2\n").contains("line 2: a corner is vertex -2"));
+        assert!(message("v 0 0 0\nf 1 1 0\n").contains("vertex 0"));
+        assert!(message("v 0 0 0\nf 1 1 /1\n").contains("vertex /1"));
+        assert!(message("v 0 0 0\nf 1 1 x\n").contains("line 2: `f` must be"));
+        assert!(message("v 0 0 0\nf 1 1 9223372036854775807\n").contains("line 2"));
+        assert!(message("v 0 0 0\nf 1 1 -9223372036854775808\n").contains("line 2"));
+        assert!(message("v 0 0 0\nf 1 1 99999999999999999999\n").contains("line 2"));
+        assert_eq!(read(b"").unwrap(), PolygonSoup::default());
+    }
+
+    #[test]
+    fn vertices_keep_their_numbers_also_without_a_face() {
+        for count in 0..6u32 {
+            let vertices: String = (0..count).map(|i| format!("v {i} 0 0\n")).collect();
+            let face = if count > 2 { format!("f -1 {} -3\n", count - 1) } else { String::new() };
+            let soup = read((vertices + &face).as_bytes()).unwrap();
+            assert_eq!(
+                soup.positions,
+                (0..count).map(|i| DVec3::new(i.into(), 0.0, 0.0)).collect::<Vec<_>>()
+            );
+            let corners = if count > 2 { vec![count - 1, count - 2, count - 3] } else { vec![] };
+            assert_eq!((soup.corners, soup.ends.len()), (corners, usize::from(count > 2)));
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Reads the object file format of Geomview (<http://www.geomview.org/docs/html/OFF.html>). Own code: no kept
+//! library reads it.
+
+use glam::DVec3;
+
+use crate::io::detect::MeshFormat;
+use crate::io::read::{Place, ReadError, brief, push_polygon, text};
+use crate::mesh::PolygonSoup;
+
+/// Reads `OFF`, also with texture coordinates, colours, normals (`ST`, `C`, `N` before the word), which are passed
+/// over. Polygons may have any number of corners; comments, empty lines, counts in the first line and a missing
+/// first word are allowed; what follows the last face is ignored.
+///
+/// # Errors
+/// [`ReadError`]: with the line.
+pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
+    let text = text(bytes);
+    let mut lines = Lines { lines: text.lines().enumerate(), last: 0 };
+    let (mut place, mut line) = lines.next("the head")?;
+    let word_end = line.find(|c: char| !c.is_ascii_alphabetic() && c != '4').unwrap_or(line.len());
+    let (word, rest) = line.split_at(word_end);
+    if word.to_ascii_uppercase().ends_with("OFF") {
+        let prefix = word[..word.len() - 3].to_ascii_uppercase();
+        if prefix.contains('4') || prefix.starts_with("N4") {
+            return Err(unsupported(place, "points of four dimensions", "write it with three coordinates"));
+        }
+        let rest = rest.trim();
+        if rest.eq_ignore_ascii_case("binary") {
+            return Err(unsupported(place, "binary OFF", "export it as text, or as binary PLY"));
+        }
+        (place, line) = if rest.is_empty() { lines.next("the counts")? } else { (place, rest) };
+    }
+    let mut numbers = line.split_whitespace();
+    let vertex_count: usize = number(&mut numbers, place, "the number of vertices")?;
+    let face_count: usize = number(&mut numbers, place, "the number of faces")?;
+
+    let mut soup = PolygonSoup::default();
+    // The counts are only believed as far as there are bytes: a line is at least as long as `0 0 0`.
+    soup.positions.reserve(vertex_count.min(bytes.len() / 6));
+    for _ in 0..vertex_count {
+        let (place, line) = lines.next("the vertices")?;
+        let mut numbers = line.split_whitespace();
+        let mut next = || number(&mut numbers, place, "a coordinate");
+        soup.positions.push(DVec3::new(next()?, next()?, next()?));
+    }
+    let mut corners = Vec::new();
+    for _ in 0..face_count {
+        let (place, line) = lines.next("the faces")?;
+        let mut numbers = line.split_whitespace();
+        let count: usize = number(&mut numbers, place, "the number of corners")?;
+        corners.clear();
+        for _ in 0..count {
+            corners.push(number(&mut numbers, place, "a corner")?);
+        }
+        push_polygon(&mut soup, corners.iter().copied(), MeshFormat::Off)?;
+    }
+    Ok(soup)
+}
+
+/// Lines that are not empty, without comments.
+struct Lines<'a> {
+    lines: std::iter::Enumerate<std::str::Lines<'a>>,
+    last: usize,
+}
+
+impl<'a> Lines<'a> {
+    fn next(&mut self, wanted: &str) -> Result<(Place, &'a str), ReadError> {
+        for (index, line) in self.lines.by_ref() {
+            self.last = index + 1;
+            let line = line.split('#').next().unwrap_or_default().trim();
+            if !line.is_empty() {
+                return Ok((Place::Line(self.last), line));
+            }
+        }
+        Err(ReadError::Truncated {
+            format: MeshFormat::Off,
+            place: Place::Line(self.last),
+            problem: format!("it ends before the end of {wanted}"),
+        })
+    }
+}
+
+fn number<'a, T: std::str::FromStr>(
+    words: &mut impl Iterator<Item = &'a str>,
+    place: Place,
+    wanted: &str,
+) -> Result<T, ReadError> {
+    let word = words.next();
+    word.and_then(|word| word.parse().ok()).ok_or_else(|| ReadError::Malformed {
+        format: MeshFormat::Off,
+        place,
+        problem: match word {
+            Some(word) => format!("{wanted} is expected, but there is {:?}", brief(word)),
+            None => format!("{wanted} is missing"),
+        },
+    })
+}
+
+fn unsupported(place: Place, what: &str, advice: &'static str) -> ReadError {
+    ReadError::Unsupported { format: MeshFormat::Off, place, what: what.into(), advice }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plain() {
+        let soup = read(b"OFF\n# a comment\n4 2 5\n\n0 0 0\n1 0 0 # corner\n1 1 0\n0 1e0 0.5\n3 0 1 2\n4 0 1 2 3 255 0 0\nmore").unwrap();
+        assert_eq!(soup.positions.len(), 4);
+        assert_eq!(soup.positions[3], DVec3::new(0.0, 1.0, 0.5));
+        assert_eq!((soup.polygon(0), soup.polygon(1)), (&[0, 1, 2][..], &[0, 1, 2, 3][..]));
+    }
+
+    #[test]
+    fn variants() {
+        let body = "3 1 0\n0 0 0 1 0 0 1\n1 0 0 0 1 0 1\n0 1 0 0 0 1 1\n3 0 1 2\n";
+        for head in ["COFF\n", "off ", "NOFF\r\n", "STCNOFF\n\n", "OFF", "\u{feff}OFF\n", ""] {
+            let soup = read(format!("{head}{body}").as_bytes()).unwrap();
+            assert_eq!((soup.positions.len(), soup.polygon(0)), (3, &[0, 1, 2][..]), "{head}");
+        }
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        let message = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
+        assert!(message("").starts_with("OFF, line 0: it ends before the end of the head"));
+        assert!(
+            message("OFF\n3 1 0\n0 0 0\n0 x 0\n")
+                .contains("line 4: a coordinate is expected, but there is \"x\"")
+        );
+        assert!(message("OFF\n3 1 0\n0 0 0\n0 0\n").contains("line 4: a coordinate is missing"));
+        assert!(message("OFF\n3 1 0\n0 0 0\n").contains("line 3: it ends before the end of the vertices"));
+        assert!(message("OFF\n1 1 0\n0 0 0\n3 0 1 -2\n").contains("\"-2\""));
+        assert!(message("OFF\n1000000000000 1 0\n0 0 0\n").contains("cut off"));
+        assert!(message("OFF\n1 1 0\n0 0 0\n99999999999 0 0\n").contains("line 4: a corner is missing"));
+        assert!(message("OFF BINARY\n\0\0\0").contains("binary OFF cannot be read"));
+        assert!(message("4OFF\n1 1 1\n0 0 0 0\n").contains("four dimensions"));
+    }
+}

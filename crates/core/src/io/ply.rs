@@ -1,0 +1,287 @@
+//! Reads PLY files in all three encodings, with `ply-rs-bw`.
+
+use std::io::ErrorKind;
+
+use glam::DVec3;
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{
+    BeginList, ElementDef, Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType,
+    ScalarType,
+};
+
+use crate::io::detect::MeshFormat;
+use crate::io::read::{Place, ReadError, brief, push_polygon};
+use crate::mesh::PolygonSoup;
+
+/// Reads a PLY file: `x`, `y`, `z` of the element `vertex` in any type of number, the list `vertex_indices` or
+/// `vertex_index` of the element `face`, and triangle strips (`tristrips`); everything else is passed over.
+///
+/// # Errors
+/// [`ReadError`]: with the line of text files. Counts are checked against the bytes that are there before anything
+/// is read.
+pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
+    let (header, start) = read_header(bytes)?;
+    let mut reader = Reader::new(&bytes[start..]);
+    let mut soup = PolygonSoup::default();
+    let header_lines = bytes[..start].iter().filter(|&&byte| byte == b'\n').count();
+    for element in header.elements.values() {
+        check_count(element, &header, reader.get_ref().len())?;
+        let error = |error| explain(error, &header, header_lines);
+        match element.name.as_str() {
+            "vertex" => {
+                require(element, &["x", "y", "z"], |kind| matches!(kind, PropertyType::Scalar(_)))?;
+                let parser = Parser::<Vertex>::new();
+                let vertices =
+                    parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
+                soup.positions = vertices.into_iter().map(|v| v.0).collect();
+            }
+            "face" => {
+                require_corners(element)?;
+                let parser = Parser::<Corners>::new();
+                let faces = parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
+                add_faces(&mut soup, &faces)?;
+            }
+            "tristrips" => {
+                require_corners(element)?;
+                let parser = Parser::<Corners>::new();
+                let strips = parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
+                for (index, strip) in strips.iter().enumerate() {
+                    add_strip(&mut soup, index, &strip.0)?;
+                }
+            }
+            // Binary elements without properties take no bytes, however many there are.
+            _ if element.properties.is_empty() && header.encoding != Encoding::Ascii => {}
+            _ => {
+                let parser = Parser::<Passed>::new();
+                parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
+            }
+        }
+    }
+    Ok(soup)
+}
+
+/// The header, and where the data starts.
+fn read_header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
+    const END: &[u8] = b"\nend_header";
+    let end = bytes.windows(END.len()).position(|window| window == END);
+    let line_break = end.and_then(|end| Some(end + 1 + bytes[end + 1..].iter().position(|&b| b == b'\n')?));
+    let Some(line_break) = line_break else {
+        return Err(ReadError::Truncated {
+            format: MeshFormat::Ply,
+            place: Place::Byte(bytes.len()),
+            problem: "the header has no line `end_header`".into(),
+        });
+    };
+    // Comments in old encodings: the library takes ASCII only.
+    let text: Vec<u8> = bytes[..=line_break].iter().map(|&b| if b.is_ascii() { b } else { b'?' }).collect();
+    let header = Parser::<Passed>::new()
+        .read_header(&mut Reader::new(&text[..]))
+        .map_err(|e| malformed(e.line().map_or(Place::File, Place::Line), first_line(&e)))?;
+    // The library keeps one of two things with the same name, and would then read the data wrong.
+    let starts = |word: &str| text.split(|&b| b == b'\n').filter(|l| l.starts_with(word.as_bytes())).count();
+    let properties: usize = header.elements.values().map(|e| e.properties.len()).sum();
+    if starts("element ") != header.elements.len() || starts("property ") != properties {
+        return Err(malformed(Place::File, "an element or a property is declared twice".into()));
+    }
+    Ok((header, line_break + 1))
+}
+
+/// Refuses counts for which there are not enough bytes: each number takes at least two in text, its size in binary.
+fn check_count(element: &ElementDef, header: &Header, remaining: usize) -> Result<(), ReadError> {
+    let size = |scalar: &ScalarType| match scalar {
+        ScalarType::Char | ScalarType::UChar => 1,
+        ScalarType::Short | ScalarType::UShort => 2,
+        ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
+        ScalarType::Double => 8,
+    };
+    let smallest: usize = match header.encoding {
+        Encoding::Ascii => (2 * element.properties.len()).max(1),
+        _ => element
+            .properties
+            .values()
+            .map(|p| match &p.data_type {
+                PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => size(scalar),
+            })
+            .sum(),
+    };
+    // The last line may have no line break.
+    let available = remaining as u64 + u64::from(header.encoding == Encoding::Ascii);
+    if (smallest as u64).checked_mul(element.count as u64).is_none_or(|needed| needed > available) {
+        return Err(ReadError::Truncated {
+            format: MeshFormat::Ply,
+            place: Place::File,
+            problem: format!(
+                "{} elements `{}` are announced, but only {remaining} bytes are left for them",
+                element.count,
+                brief(&element.name)
+            ),
+        });
+    }
+    Ok(())
+}
+
+fn require(element: &ElementDef, names: &[&str], fits: fn(&PropertyType) -> bool) -> Result<(), ReadError> {
+    for name in names {
+        if !element.properties.get(*name).is_some_and(|property| fits(&property.data_type)) {
+            let problem = format!("element `{}` has no fitting property `{name}`", brief(&element.name));
+            return Err(malformed(Place::File, problem));
+        }
+    }
+    Ok(())
+}
+
+fn require_corners(element: &ElementDef) -> Result<(), ReadError> {
+    let name =
+        if element.properties.contains_key("vertex_index") { "vertex_index" } else { "vertex_indices" };
+    require(element, &[name], |kind| matches!(kind, PropertyType::List(..)))
+}
+
+fn add_faces(soup: &mut PolygonSoup, faces: &[Corners]) -> Result<(), ReadError> {
+    soup.ends.reserve(faces.len());
+    soup.corners.reserve(faces.len().saturating_mul(3));
+    for (index, face) in faces.iter().enumerate() {
+        if let Some(&corner) = face.0.iter().find(|&&corner| u32::try_from(corner).is_err()) {
+            return Err(malformed(Place::Item("face", index), format!("a corner is vertex {corner}")));
+        }
+        push_polygon(soup, face.0.iter().map(|&corner| corner as u32), MeshFormat::Ply)?;
+    }
+    Ok(())
+}
+
+/// Every corner of a strip makes a triangle with the two before it, turned every second time; -1 starts anew.
+fn add_strip(soup: &mut PolygonSoup, index: usize, strip: &[i64]) -> Result<(), ReadError> {
+    for run in strip.split(|&corner| corner == -1) {
+        for (i, triangle) in run.windows(3).enumerate() {
+            let [a, b, c] =
+                if i % 2 == 0 { [0, 1, 2] } else { [1, 0, 2] }.map(|k| u32::try_from(triangle[k]));
+            let (Ok(a), Ok(b), Ok(c)) = (a, b, c) else {
+                let problem = format!("one of the corners {triangle:?} is not a vertex");
+                return Err(malformed(Place::Item("strip", index), problem));
+            };
+            // Strips are sewn together by triangles with a repeated corner.
+            if a != b && b != c && c != a {
+                push_polygon(soup, [a, b, c], MeshFormat::Ply)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn malformed(place: Place, problem: String) -> ReadError {
+    ReadError::Malformed { format: MeshFormat::Ply, place, problem }
+}
+
+/// The library's message without the data that it quotes.
+fn first_line(error: &ParseError) -> String {
+    let message = error.to_string();
+    let start =
+        message.split_once(": ").filter(|(head, _)| head.starts_with("Line ")).map_or(&*message, |m| m.1);
+    let cause = message.rsplit("Error: ").next().filter(|_| message.contains('\n')).unwrap_or_default();
+    let line = |text: &str| brief(text.lines().next().unwrap_or_default().trim());
+    format!("{} {}", line(start), line(cause)).trim_end().to_string()
+}
+
+fn explain(error: ParseError, header: &Header, header_lines: usize) -> ReadError {
+    let (format, problem) = (MeshFormat::Ply, first_line(&error));
+    let place = match (header.encoding, error.line()) {
+        // The library counts on from 1 behind the header.
+        (Encoding::Ascii, Some(line)) => Place::Line(header_lines + line),
+        _ => Place::File,
+    };
+    match error.kind() {
+        ErrorKind::UnexpectedEof => ReadError::Truncated { format, place, problem },
+        _ => ReadError::Malformed { format, place, problem },
+    }
+}
+
+/// An element that is passed over.
+struct Passed;
+
+impl PropertyAccess for Passed {
+    fn new() -> Self {
+        Self
+    }
+}
+
+/// The position of a vertex.
+struct Vertex(DVec3);
+
+impl Vertex {
+    fn set(&mut self, name: &str, value: f64) -> PropertyAccessResult {
+        match name {
+            "x" => self.0.x = value,
+            "y" => self.0.y = value,
+            "z" => self.0.z = value,
+            _ => return PropertyAccessResult::Ignored,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Self(DVec3::ZERO)
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        match property {
+            Property::Char(value) => self.set(name, value.into()),
+            Property::UChar(value) => self.set(name, value.into()),
+            Property::Short(value) => self.set(name, value.into()),
+            Property::UShort(value) => self.set(name, value.into()),
+            Property::Int(value) => self.set(name, value.into()),
+            Property::UInt(value) => self.set(name, value.into()),
+            Property::Float(value) => self.set(name, value.into()),
+            Property::Double(value) => self.set(name, value),
+            _ => PropertyAccessResult::Ignored,
+        }
+    }
+}
+
+/// The corners of a polygon or strip.
+struct Corners(Vec<i64>);
+
+impl Corners {
+    fn set<T: Into<i64> + Copy>(&mut self, name: &str, values: &[T]) -> PropertyAccessResult {
+        if !is_corners(name) {
+            return PropertyAccessResult::Ignored;
+        }
+        self.0 = values.iter().map(|&v| v.into()).collect();
+        PropertyAccessResult::Set
+    }
+}
+
+fn is_corners(name: &str) -> bool {
+    matches!(name, "vertex_indices" | "vertex_index")
+}
+
+impl PropertyAccess for Corners {
+    fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        match property {
+            Property::ListChar(values) => self.set(name, &values),
+            Property::ListUChar(values) => self.set(name, &values),
+            Property::ListShort(values) => self.set(name, &values),
+            Property::ListUShort(values) => self.set(name, &values),
+            Property::ListInt(values) => self.set(name, &values),
+            Property::ListUInt(values) => self.set(name, &values),
+            _ if is_corners(name) => PropertyAccessResult::UnsupportedType,
+            _ => PropertyAccessResult::Ignored,
+        }
+    }
+
+    fn begin_list_float(&mut self, name: &str, _: usize) -> BeginList<'_, f32> {
+        if is_corners(name) { BeginList::UnsupportedType } else { BeginList::UseSetter }
+    }
+
+    fn begin_list_double(&mut self, name: &str, _: usize) -> BeginList<'_, f64> {
+        if is_corners(name) { BeginList::UnsupportedType } else { BeginList::UseSetter }
+    }
+}
+
+#[cfg(test)]
+#[path = "ply_tests.rs"]
+mod tests;

@@ -1,0 +1,125 @@
+//! Points as NumPy's NPY (format version 1.0 and later, numpy.lib.format). Own code: the head is one line, and the
+//! readers at hand allocate what it claims.
+
+use std::io;
+
+use glam::DVec3;
+
+use crate::io::points::{PointPlace, PointRow, Points, PointsError};
+
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+
+pub(super) fn write(rows: &[PointRow], out: &mut dyn io::Write) -> io::Result<()> {
+    let head = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, 3), }}", rows.len());
+    // Magic, version, length of the head and head together fill a multiple of 64 bytes and end with a new line.
+    let length = (10 + head.len() + 1).next_multiple_of(64) - 10;
+    out.write_all(MAGIC)?;
+    out.write_all(&[1, 0])?;
+    out.write_all(&(length as u16).to_le_bytes())?;
+    writeln!(out, "{head:width$}", width = length - 1)?;
+    for row in rows {
+        for x in row.position.to_array() {
+            out.write_all(&x.to_le_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError> {
+    let broken = |problem: &str| points.malformed(PointPlace::File, problem);
+    let (head, data) = split(bytes).ok_or_else(|| broken("the head is cut off"))?;
+    let number = Number::from_name(value(head, "descr").unwrap_or_default())
+        .ok_or_else(|| broken("the numbers are neither float32 nor float64"))?;
+    let fortran = match value(head, "fortran_order") {
+        Some(order) if order.starts_with("True") => true,
+        Some(order) if order.starts_with("False") => false,
+        _ => return Err(broken("the head does not tell the order")),
+    };
+    let shape =
+        value(head, "shape").and_then(shape).ok_or_else(|| broken("the head does not tell the shape"))?;
+    let [count, columns] = shape[..] else {
+        return Err(broken(&format!("the shape {shape:?} is not that of rows and columns")));
+    };
+    if columns < 3 {
+        return Err(broken(&format!("a point has {columns} coordinates instead of 3")));
+    }
+    let needed = count.checked_mul(columns).and_then(|n| n.checked_mul(number.size() as u64));
+    if needed.is_none_or(|needed| needed > data.len() as u64) {
+        return Err(broken(&format!(
+            "{count} x {columns} numbers are announced, but the file ends after {} bytes of them",
+            data.len()
+        )));
+    }
+    // Both fit in the bytes at hand, so in memory.
+    let (count, columns) = (count as usize, columns as usize);
+    points.positions.reserve_exact(count);
+    for row in 0..count {
+        let at = |column: usize| {
+            let index = if fortran { column * count + row } else { row * columns + column };
+            number.read(&data[index * number.size()..])
+        };
+        points.push(DVec3::new(at(0), at(1), at(2)), PointPlace::Point(row))?;
+    }
+    Ok(())
+}
+
+/// The head without what comes before it, and the numbers after it.
+fn split(bytes: &[u8]) -> Option<(&str, &[u8])> {
+    let (length, start) = match bytes.get(MAGIC.len())? {
+        1 => (usize::from(u16::from_le_bytes(bytes.get(8..10)?.try_into().ok()?)), 10),
+        _ => (usize::try_from(u32::from_le_bytes(bytes.get(8..12)?.try_into().ok()?)).ok()?, 12),
+    };
+    let (head, data) = bytes[start..].split_at_checked(length)?;
+    Some((std::str::from_utf8(head).ok()?, data))
+}
+
+/// What follows a key of the dictionary.
+fn value<'a>(head: &'a str, key: &str) -> Option<&'a str> {
+    let (_, rest) = head.split_once(&format!("'{key}'"))?;
+    Some(rest.trim_start().strip_prefix(':')?.trim_start())
+}
+
+/// A tuple of numbers.
+fn shape(value: &str) -> Option<Vec<u64>> {
+    let (tuple, _) = value.strip_prefix('(')?.split_once(')')?;
+    tuple.split(',').map(str::trim).filter(|n| !n.is_empty()).map(|n| n.parse().ok()).collect()
+}
+
+#[derive(Clone, Copy)]
+enum Number {
+    SingleLittle,
+    SingleBig,
+    DoubleLittle,
+    DoubleBig,
+}
+
+impl Number {
+    fn from_name(value: &str) -> Option<Self> {
+        let known = [
+            ("'<f4'", Self::SingleLittle),
+            ("'>f4'", Self::SingleBig),
+            ("'<f8'", Self::DoubleLittle),
+            ("'>f8'", Self::DoubleBig),
+        ];
+        known.into_iter().find(|(name, _)| value.starts_with(name)).map(|(_, number)| number)
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::SingleLittle | Self::SingleBig => 4,
+            Self::DoubleLittle | Self::DoubleBig => 8,
+        }
+    }
+
+    /// The number at the start of `bytes`, which are enough.
+    fn read(self, bytes: &[u8]) -> f64 {
+        let single: [u8; 4] = std::array::from_fn(|i| bytes[i]);
+        let double = || std::array::from_fn(|i| bytes[i]);
+        match self {
+            Self::SingleLittle => f64::from(f32::from_le_bytes(single)),
+            Self::SingleBig => f64::from(f32::from_be_bytes(single)),
+            Self::DoubleLittle => f64::from_le_bytes(double()),
+            Self::DoubleBig => f64::from_be_bytes(double()),
+        }
+    }
+}
