@@ -2,12 +2,12 @@
 
 use crate::correct::Correction;
 use crate::domain::PlanarDomain;
-use crate::equalize::{EqualizeOptions, EqualizeReport};
+use crate::equalize::{EqualizeOptions, EqualizeReport, equalize};
 use crate::irregularity::{Irregularity, irregularity};
 use crate::mesh::SurfaceMesh;
 use crate::progress::Progress;
 use crate::request::{MOST_DOMAIN_POINTS, Scattered, Scattering};
-use crate::sample::Sample;
+use crate::sample::{Origin, Sample};
 use crate::segment::{SegmentOptions, Segmentation, segment};
 use crate::sequence::{self, Sequence, SequenceError};
 use crate::unfold::{Strips, unfold};
@@ -123,7 +123,37 @@ pub fn run(mesh: &SurfaceMesh, options: &Options, progress: &dyn Progress) -> Re
     let Scattered { samples, correction, d_m } = scattering.meet(options.request)?;
     stage("irregularity")?;
     let irregularity = irregularity(&strips, d_m, options.tolerance * d_m);
-    Ok(Run { segmentation, strips, domain, correction, irregularity, equalize: None, d_m, samples })
+    let (samples, equalize) = match &options.equalize {
+        None => (samples, None),
+        Some(options) => {
+            stage("equalize")?;
+            let (samples, report) = equalize_samples(mesh, &strips, &domain, samples, options, progress);
+            (samples, Some(report))
+        }
+    };
+    if progress.is_cancelled() {
+        return Err(OptionsError::Cancelled);
+    }
+    Ok(Run { segmentation, strips, domain, correction, irregularity, equalize, d_m, samples })
+}
+
+/// Equalizes samples: those that moved lie in the planar domain where their new face lies.
+fn equalize_samples(
+    mesh: &SurfaceMesh,
+    strips: &Strips,
+    domain: &PlanarDomain,
+    samples: Vec<Sample>,
+    options: &EqualizeOptions,
+    progress: &dyn Progress,
+) -> (Vec<Sample>, EqualizeReport) {
+    let points: Vec<_> = samples.iter().map(|s| s.point).collect();
+    let strip_of_face: Vec<_> = strips.places.iter().map(|p| p.strip).collect();
+    let equalized = equalize(mesh, &points, &strip_of_face, options, progress);
+    let samples = equalized.points.into_iter().map(|point| {
+        let (strip, place) = strips.lay_point(&point);
+        Sample { point, strip, place: place + domain.offsets[strip.index()], origin: Origin::Equalized }
+    });
+    (samples.collect(), equalized.report)
 }
 
 fn check(options: &Options) -> Result<(), OptionsError> {

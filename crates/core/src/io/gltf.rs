@@ -10,7 +10,7 @@ use gltf::mesh::{Mode, Primitive};
 use gltf::{Document, Gltf, Node, Semantic};
 
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, Resolver, push_polygon};
+use crate::io::read::{Place, ReadError, Resolver, brief, push_polygon};
 use crate::mesh::PolygonSoup;
 use buffers::Buffers;
 
@@ -77,14 +77,14 @@ fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes)
-        .map_err(|error| malformed(Place::File, error.to_string()))?;
+        .map_err(|error| malformed(Place::File, brief(&error.to_string())))?;
     let root = document.as_json();
     for extension in &root.extensions_required {
         if !HARMLESS.iter().any(|harmless| extension.starts_with(harmless)) {
             return Err(ReadError::Unsupported {
                 format: MeshFormat::Gltf,
                 place: Place::File,
-                what: format!("the required extension {extension}"),
+                what: format!("the required extension {}", brief(extension)),
                 advice: "export it without compression and extensions",
             });
         }
@@ -97,7 +97,7 @@ fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
         let path = path().to_string();
         // The box around the positions is asked for by the specification, but not needed.
         if !(error == Error::Missing && (path.ends_with(".min") || path.ends_with(".max"))) {
-            first = Some(format!("{path}: {error}"));
+            first = Some(format!("{}: {error}", brief(&path)));
         }
     });
     match first {

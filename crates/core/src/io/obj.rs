@@ -6,12 +6,11 @@ use glam::DVec3;
 use tobj::{LoadError, LoadOptions};
 
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, push_polygon, text};
+use crate::io::read::{Place, ReadError, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
-/// Reads an OBJ file: its vertices, as far as faces use them and in the order in which they do, and its faces with
-/// any number of corners; relative (negative) indices and continued lines are understood. Groups, materials, lines
-/// and points are passed over.
+/// Reads an OBJ file: all its vertices and its faces with any number of corners; relative (negative) indices and
+/// continued lines are understood. Groups, materials, lines and points are passed over.
 ///
 /// # Errors
 /// [`ReadError`]: with the line.
@@ -20,27 +19,32 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
     let mut lines = LineCounter { rest: plain.as_bytes(), line: 0 };
     let options = LoadOptions { triangulate: false, ..LoadOptions::default() };
     let (models, _) = tobj::load_obj_buf(&mut lines, &options, |_| Err(LoadError::GenericFailure))
-        .map_err(|error| explain(error, &plain, lines.line))?;
+        // The first line is not the file's.
+        .map_err(|error| explain(error, &plain, lines.line - 1))?;
 
     let mut soup = PolygonSoup::default();
-    for model in models {
-        let mesh = model.mesh;
-        let first = soup.positions.len() as u32;
-        soup.positions.extend(mesh.positions.chunks_exact(3).map(DVec3::from_slice));
-        let mut corners = mesh.indices.iter().map(|i| first + i);
-        // No arities mean that all faces are triangles.
+    // Without groups there is one model. No arities mean that all faces are triangles.
+    for mesh in models.into_iter().map(|model| model.mesh) {
+        soup.positions = mesh.positions.chunks_exact(3).map(DVec3::from_slice).collect();
         let triangles = if mesh.face_arities.is_empty() { mesh.indices.len() / 3 } else { 0 };
-        for arity in mesh.face_arities.iter().copied().chain(std::iter::repeat_n(3, triangles)) {
+        let mut corners = mesh.indices.iter().copied();
+        let mut arities = mesh.face_arities.iter().copied().chain(std::iter::repeat_n(3, triangles));
+        let all_vertices = arities.next().unwrap_or_default();
+        corners.by_ref().take(all_vertices as usize).for_each(drop);
+        for arity in arities {
             push_polygon(&mut soup, corners.by_ref().take(arity as usize), MeshFormat::Obj)?;
         }
     }
     Ok(soup)
 }
 
-/// The same lines with nothing but positions and corners. The library stops at what is none of our business: colours
-/// at some of the vertices, comments behind a face, materials without a name; and it takes polylines for faces.
+/// The same lines with nothing but positions and corners, behind a face of all vertices. The library stops at what
+/// is none of our business: colours at some of the vertices, comments behind a face, materials without a name; it
+/// takes polylines for faces; and it renumbers the vertices as faces use them, which the first face makes the order
+/// of the file.
 fn plain(text: &str) -> String {
-    let mut plain = String::with_capacity(text.len());
+    let mut plain = String::with_capacity(2 * text.len());
+    let mut vertices = 0;
     let mut lines = text.lines();
     let mut joined = String::new();
     while let Some(line) = lines.next() {
@@ -61,6 +65,7 @@ fn plain(text: &str) -> String {
         let mut words = line.split('#').next().unwrap_or_default().split_ascii_whitespace();
         match words.next() {
             Some("v") => {
+                vertices += 1;
                 plain.push('v');
                 for word in words.take(3) {
                     plain.push(' ');
@@ -79,6 +84,10 @@ fn plain(text: &str) -> String {
         }
         plain.extend(std::iter::repeat_n('\n', breaks));
     }
+    let mut all: String =
+        (1..=vertices).fold("f".into(), |all, vertex: usize| all + " " + &vertex.to_string());
+    all.push('\n');
+    plain.insert_str(0, &all);
     plain
 }
 
@@ -118,7 +127,7 @@ fn explain(error: LoadError, plain: &str, line: usize) -> ReadError {
         LoadError::FaceParseError => {
             (Place::Line(line), "`f` must be followed by numbers of vertices".to_string())
         }
-        error => (Place::Line(line), error.to_string()),
+        error => (Place::Line(line), brief(&error.to_string())),
     };
     ReadError::Malformed { format: MeshFormat::Obj, place, problem }
 }
@@ -127,14 +136,15 @@ fn explain(error: LoadError, plain: &str, line: usize) -> ReadError {
 fn out_of_bounds(plain: &str) -> (Place, String) {
     let total = plain.lines().filter(|line| line.starts_with('v')).count();
     let mut before = 0;
-    for (line, text) in plain.lines().enumerate() {
+    for (line, text) in plain.lines().enumerate().skip(1) {
         before += usize::from(text.starts_with('v'));
         for word in text.split_ascii_whitespace().skip(1).filter(|_| text.starts_with('f')) {
             let index: i64 = word.parse().unwrap_or(0);
             let vertex = if index < 0 { before as i64 + index } else { index - 1 };
             if !(0..total as i64).contains(&vertex) {
-                let problem = format!("a corner is vertex {word}, but there are {total} (they count from 1)");
-                return (Place::Line(line + 1), problem);
+                let problem =
+                    format!("a corner is vertex {}, but there are {total} (they count from 1)", brief(word));
+                return (Place::Line(line), problem);
             }
         }
     }
@@ -183,5 +193,20 @@ mod tests {
         assert!(message("v 0 0 0\nf 1 1 -9223372036854775808\n").contains("line 2"));
         assert!(message("v 0 0 0\nf 1 1 99999999999999999999\n").contains("line 2"));
         assert_eq!(read(b"").unwrap(), PolygonSoup::default());
+    }
+
+    #[test]
+    fn vertices_keep_their_numbers_also_without_a_face() {
+        for count in 0..6u32 {
+            let vertices: String = (0..count).map(|i| format!("v {i} 0 0\n")).collect();
+            let face = if count > 2 { format!("f -1 {} -3\n", count - 1) } else { String::new() };
+            let soup = read((vertices + &face).as_bytes()).unwrap();
+            assert_eq!(
+                soup.positions,
+                (0..count).map(|i| DVec3::new(i.into(), 0.0, 0.0)).collect::<Vec<_>>()
+            );
+            let corners = if count > 2 { vec![count - 1, count - 2, count - 3] } else { vec![] };
+            assert_eq!((soup.corners, soup.ends.len()), (corners, usize::from(count > 2)));
+        }
     }
 }

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, push_polygon, text};
+use crate::io::read::{Place, ReadError, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
 /// Reads `OFF`, also with texture coordinates, colours, normals (`ST`, `C`, `N` before the word), which are passed
@@ -90,7 +90,7 @@ fn number<'a, T: std::str::FromStr>(
         format: MeshFormat::Off,
         place,
         problem: match word {
-            Some(word) => format!("{wanted} is expected, but there is {word:?}"),
+            Some(word) => format!("{wanted} is expected, but there is {:?}", brief(word)),
             None => format!("{wanted} is missing"),
         },
     })

@@ -10,7 +10,7 @@ use ply_rs_bw::ply::{
 };
 
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, push_polygon};
+use crate::io::read::{Place, ReadError, brief, push_polygon};
 use crate::mesh::PolygonSoup;
 
 /// Reads a PLY file: `x`, `y`, `z` of the element `vertex` in any type of number, the list `vertex_indices` or
@@ -112,7 +112,8 @@ fn check_count(element: &ElementDef, header: &Header, remaining: usize) -> Resul
             place: Place::File,
             problem: format!(
                 "{} elements `{}` are announced, but only {remaining} bytes are left for them",
-                element.count, element.name
+                element.count,
+                brief(&element.name)
             ),
         });
     }
@@ -122,7 +123,7 @@ fn check_count(element: &ElementDef, header: &Header, remaining: usize) -> Resul
 fn require(element: &ElementDef, names: &[&str], fits: fn(&PropertyType) -> bool) -> Result<(), ReadError> {
     for name in names {
         if !element.properties.get(*name).is_some_and(|property| fits(&property.data_type)) {
-            let problem = format!("element `{}` has no fitting property `{name}`", element.name);
+            let problem = format!("element `{}` has no fitting property `{name}`", brief(&element.name));
             return Err(malformed(Place::File, problem));
         }
     }
@@ -176,8 +177,7 @@ fn first_line(error: &ParseError) -> String {
     let start =
         message.split_once(": ").filter(|(head, _)| head.starts_with("Line ")).map_or(&*message, |m| m.1);
     let cause = message.rsplit("Error: ").next().filter(|_| message.contains('\n')).unwrap_or_default();
-    let line =
-        |text: &str| text.lines().next().unwrap_or_default().trim().chars().take(160).collect::<String>();
+    let line = |text: &str| brief(text.lines().next().unwrap_or_default().trim());
     format!("{} {}", line(start), line(cause)).trim_end().to_string()
 }
 

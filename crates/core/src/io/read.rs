@@ -138,6 +138,17 @@ pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
     String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
 }
 
+/// The start of what a file or a library says, on one line, for messages.
+pub(super) fn brief(text: &str) -> String {
+    const LONGEST: usize = 100;
+    let mut brief: String =
+        text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if brief.len() < text.len() {
+        brief.push_str("...");
+    }
+    brief
+}
+
 /// Appends a polygon as long as 32 bits can count the corners.
 pub(super) fn push_polygon(
     soup: &mut PolygonSoup,

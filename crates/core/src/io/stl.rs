@@ -5,7 +5,7 @@ use std::io::{Cursor, ErrorKind};
 use glam::DVec3;
 
 use crate::io::detect::{MeshFormat, binary_stl_count, binary_stl_size};
-use crate::io::read::{Place, ReadError, push_polygon, text};
+use crate::io::read::{Place, ReadError, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
 /// Reads an STL file. Every triangle gets its own three vertices: checking the soup welds them. Binary files that
@@ -79,7 +79,7 @@ fn solids(text: &str) -> Vec<String> {
 fn append(soup: &mut PolygonSoup, bytes: &[u8]) -> Result<(), ReadError> {
     let error = |soup: &PolygonSoup, error: std::io::Error| {
         let (format, place) = (MeshFormat::Stl, Place::Item("triangle", soup.polygon_count()));
-        let problem = error.to_string();
+        let problem = brief(&error.to_string());
         match error.kind() {
             ErrorKind::UnexpectedEof => ReadError::Truncated { format, place, problem },
             _ => ReadError::Malformed { format, place, problem },

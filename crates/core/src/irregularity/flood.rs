@@ -3,11 +3,8 @@
 //! Near is meant through the strip: where a strip overlaps itself, an edge of one sheet is far from the other. So
 //! all open edges are flooded over the faces at once, nearest first, across sides and closed cuts. An edge passes
 //! on from a face only through sides that a straight line from it can leave by; where only lines from one of its
-//! ends can, that end passes on alone. It stops at a face all of which is nearer to another edge, because so is
-//! everything behind it.
-
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+//! ends can, that end passes on alone. It stops at a face or side all of which is nearer to another edge, because
+//! so is everything behind it.
 
 use glam::DVec2;
 
@@ -66,7 +63,7 @@ impl Sources {
 }
 
 /// A source on its way into a face.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 struct Arrival {
     /// No point of the face that the source reaches is nearer to it than this.
     distance: f64,
@@ -74,19 +71,33 @@ struct Arrival {
     source: u32,
 }
 
-impl Eq for Arrival {}
-
-impl Ord for Arrival {
-    /// The nearest is the greatest, as the heap gives the greatest first.
-    fn cmp(&self, other: &Self) -> Ordering {
-        let order = other.distance.total_cmp(&self.distance);
-        order.then(other.face.cmp(&self.face)).then(other.source.cmp(&self.source))
-    }
+/// Gives the nearest arrivals first, up to the width of a bucket: their order decides about the work only, and
+/// exact order would cost more than it saves.
+struct Queue {
+    buckets: Vec<Vec<Arrival>>,
+    first: usize,
+    per_distance: f64,
 }
 
-impl PartialOrd for Arrival {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
+impl Queue {
+    const BUCKETS: usize = 1024;
+
+    fn new(farthest: f64) -> Self {
+        let per_distance = Self::BUCKETS as f64 / farthest;
+        Self { buckets: vec![Vec::new(); Self::BUCKETS], first: 0, per_distance }
+    }
+
+    fn push(&mut self, arrival: Arrival) {
+        // The cast saturates; what is nearer than the front joins the front.
+        let bucket = (arrival.distance * self.per_distance) as usize;
+        self.buckets[bucket.clamp(self.first, Self::BUCKETS - 1)].push(arrival);
+    }
+
+    fn pop(&mut self) -> Option<Arrival> {
+        while self.buckets[self.first].is_empty() && self.first + 1 < Self::BUCKETS {
+            self.first += 1;
+        }
+        self.buckets[self.first].pop()
     }
 }
 
@@ -101,15 +112,15 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
     let mut arrived: Vec<(u32, Option<u32>)> = Vec::new();
     // No point of the face is farther than this from the nearest open edge.
     let mut farthest = vec![f64::INFINITY; count];
-    let mut heap: BinaryHeap<Arrival> = open
-        .iter()
-        .zip(0u32..)
-        .filter_map(|(&place, source)| {
-            let border = &strip.border[place];
-            let side = sides.find(border.from, border.to)?;
-            Some(Arrival { distance: 0.0, face: side / 3, source })
-        })
-        .collect();
+    // The same for each side of each face and the sources that reached that face.
+    let mut farthest_side = vec![[f64::INFINITY; 3]; count];
+    let mut queue = Queue::new(d_m.min(strip.extent.length()));
+    for (&place, source) in open.iter().zip(0u32..) {
+        let edge = &strip.border[place];
+        if let Some(side) = sides.find(edge.from, edge.to) {
+            queue.push(Arrival { distance: 0.0, face: side / 3, source });
+        }
+    }
     let linked = |from: Option<u32>, arrived: &[(u32, Option<u32>)]| {
         let mut all = Vec::new();
         let mut next = from;
@@ -120,7 +131,7 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
         }
         all
     };
-    while let Some(Arrival { distance, face, source }) = heap.pop() {
+    while let Some(Arrival { distance, face, source }) = queue.pop() {
         let f = face as usize;
         if distance >= farthest[f] {
             continue;
@@ -140,13 +151,17 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
         let distances = corners.map(|p| segment.distance(p));
         farthest[f] = farthest[f].min(distances[0].max(distances[1]).max(distances[2]));
         for c in 0..3 {
+            let far = &mut farthest_side[f][c];
+            let known = *far;
+            *far = known.min(distances[c].max(distances[(c + 1) % 3]));
             let Some(neighbour) = neighbours[f][c] else { continue };
             let side = Segment { from: corners[c], to: corners[(c + 1) % 3] };
             let Some(source) = sources.through(source, &side) else { continue };
             let ends = distances[c].min(distances[(c + 1) % 3]);
             let distance = ends.min(side.distance(segment.from)).min(side.distance(segment.to));
-            if distance < d_m && distance < farthest[neighbour as usize] {
-                heap.push(Arrival { distance, face: neighbour, source });
+            // What is behind a side, all of which is nearer to another source, is nearer to that one as well.
+            if distance < d_m && distance < known && distance < farthest[neighbour as usize] {
+                queue.push(Arrival { distance, face: neighbour, source });
             }
         }
     }

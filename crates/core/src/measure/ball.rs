@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::ids::FaceId;
-use crate::measure::norms::{Norms, Shares};
+use crate::measure::norms::{Norms, Shares, worst};
 use crate::measure::testset;
 use crate::measure::tree::Tree;
 use crate::mesh::SurfaceMesh;
@@ -54,56 +54,79 @@ pub struct BallReport {
     pub worst: Option<Ball>,
 }
 
-/// Counts points in balls and compares with the exact area of the surface inside: triangles cut by a sphere in
-/// closed form, whole branches of a tree of boxes where they lie inside. The centres lie evenly over the area;
-/// the radius is sqrt(s A / pi) with log s even between `smallest` and `largest`. The balls depend on the mesh
-/// and the options only, and move and scale with the mesh. A point on the sphere counts as inside.
+/// The balls of one mesh with their shares of area: made once, then any number of point sets are measured by them.
 ///
-/// O(T log T + n log n) to build, then O(triangles and points near the sphere) a ball. Progress: `ball`, one
-/// step a ball.
+/// The centres lie evenly over the area; the radius is sqrt(s A / pi) with log s even between
+/// [`smallest`](BallOptions::smallest) and [`largest`](BallOptions::largest). The shares of area are exact:
+/// triangles cut by a sphere in closed form, whole branches of a tree of boxes where they lie inside. The balls
+/// depend on the mesh and the options only, and move and scale with the mesh.
+#[derive(Clone, Debug)]
+pub struct Balls {
+    balls: Vec<Ball>,
+    /// The share of area of each.
+    areas: Vec<f64>,
+}
+
+impl Balls {
+    /// O(T log T), and O(triangles near the sphere) a ball. Progress: `ball`, one step a ball.
+    pub fn new(mesh: &SurfaceMesh, options: &BallOptions, progress: &dyn Progress) -> Self {
+        progress.begin("ball", options.balls as u64);
+        let faces =
+            Tree::of_triangles(mesh.face_count(), |i| mesh.triangle(FaceId::new(i)), mesh.face_areas());
+        let balls = test_balls(mesh, options);
+        let areas = parallel::map_chunks(balls.len(), STEP, |range| {
+            if progress.is_cancelled() {
+                return vec![f64::NAN; range.len()];
+            }
+            let steps = range.len() as u64;
+            let areas: Vec<f64> = balls[range]
+                .iter()
+                .map(|&Ball { centre, radius }| {
+                    let area = faces.weight_in_ball(centre, radius, |i| {
+                        let face = FaceId::new(i);
+                        let corners = mesh.triangle(face).map(|p| p - centre);
+                        triangle_in_ball(corners, mesh.face_normal(face), mesh.face_area(face), radius)
+                    });
+                    (area / mesh.area()).min(1.0)
+                })
+                .collect();
+            progress.advance(steps);
+            areas
+        })
+        .concat();
+        Self { balls, areas }
+    }
+
+    /// Measures points; a point on the sphere counts as inside. O(n log n), and O(points near the sphere) a ball.
+    pub fn measure(&self, mesh: &SurfaceMesh, points: &[SurfacePoint]) -> BallReport {
+        let positions: Vec<DVec3> = points.iter().map(|p| mesh.locate(p)).collect();
+        let cloud = Tree::of_points(&positions);
+        let shares = parallel::map_chunks(self.balls.len(), STEP, |range| {
+            range
+                .map(|k| {
+                    let Ball { centre, radius } = self.balls[k];
+                    let count = cloud.weight_in_ball(centre, radius, |i| {
+                        f64::from(u8::from(positions[i].distance_squared(centre) <= radius * radius))
+                    });
+                    Shares { area: self.areas[k], points: count / points.len() as f64 }
+                })
+                .collect::<Vec<_>>()
+        })
+        .concat();
+        let worst = worst(&shares, self.balls.iter().copied());
+        BallReport { norms: Norms::over(&shares, points.len()), worst }
+    }
+}
+
+/// The norms of share of points - share of area over balls: see [`Balls`], which measures several sets on one mesh
+/// at the price of one.
 pub fn ball(
     mesh: &SurfaceMesh,
     points: &[SurfacePoint],
     options: &BallOptions,
     progress: &dyn Progress,
 ) -> BallReport {
-    progress.begin("ball", options.balls as u64);
-    let positions: Vec<DVec3> = points.iter().map(|p| mesh.locate(p)).collect();
-    let faces = Tree::of_triangles(mesh.face_count(), |i| mesh.triangle(FaceId::new(i)), mesh.face_areas());
-    let cloud = Tree::of_points(&positions);
-    let balls = test_balls(mesh, options);
-    let shares: Vec<Shares> = parallel::map_chunks(balls.len(), STEP, |range| {
-        if progress.is_cancelled() {
-            return vec![Shares { area: f64::NAN, points: f64::NAN }; range.len()];
-        }
-        let steps = range.len() as u64;
-        let shares: Vec<Shares> = balls[range]
-            .iter()
-            .map(|&Ball { centre, radius }| {
-                let area = faces.weight_in_ball(centre, radius, |i| {
-                    let face = FaceId::new(i);
-                    let [a, b, c] = mesh.triangle(face).map(|p| p - centre);
-                    triangle_in_ball([a, b, c], mesh.face_normal(face), mesh.face_area(face), radius)
-                });
-                let count = cloud.weight_in_ball(centre, radius, |i| {
-                    f64::from(u8::from(positions[i].distance_squared(centre) <= radius * radius))
-                });
-                Shares { area: (area / mesh.area()).min(1.0), points: count / points.len() as f64 }
-            })
-            .collect();
-        progress.advance(steps);
-        shares
-    })
-    .concat();
-    let mut worst: Option<(f64, Ball)> = None;
-    for (figure, &ball) in shares.iter().zip(&balls) {
-        let difference = (figure.points - figure.area).abs();
-        // A comparison with NaN is false: without points there is no worst ball.
-        if difference > worst.map_or(-1.0, |(d, _)| d) {
-            worst = Some((difference, ball));
-        }
-    }
-    BallReport { norms: Norms::over(&shares, points.len()), worst: worst.map(|(_, ball)| ball) }
+    Balls::new(mesh, options, progress).measure(mesh, points)
 }
 
 /// The balls that are tried.

@@ -1,5 +1,7 @@
 //! Energy discrepancy and eta: how near the points come to the best that is possible on any surface.
 
+use glam::DVec3;
+
 use crate::measure::profile::{Profile, Scene};
 use crate::measure::testset;
 use crate::mesh::SurfaceMesh;
@@ -58,44 +60,101 @@ pub struct EnergyReport {
     pub mean_distance: f64,
 }
 
-/// Computes the energy discrepancy as the mean squared half-space discrepancy: with F(t) the share of area and
-/// F_n(t) the share of points below the plane w.x = t, D^2 = 4 E_w of the integral of (F_n - F)^2 over t (Crofton:
+/// The planes of one mesh with their shares of area: made once, then any number of point sets are measured by them.
+///
+/// The energy discrepancy is the mean squared half-space discrepancy: with F(t) the share of area and F_n(t) the
+/// share of points below the plane w.x = t, D^2 = 4 E_w of the integral of (F_n - F)^2 over t (Crofton:
 /// |r| = 2 E_w |w.r| over uniform directions w), and E|Y - Y'| = 4 E_w of the integral of F (1 - F). Every term is
 /// positive, so nothing cancels; F is exact up to rounding; what is left is the error of the finite number of
 /// planes, which is reported and kept below `tolerance` within the limit of `work`.
-///
-/// O(T + n) a direction. Progress: `energy`, one step a direction; it begins anew when the first 512 directions do
-/// not suffice.
+#[derive(Clone, Debug)]
+pub struct EnergyPlanes {
+    scene: Scene,
+    options: EnergyOptions,
+    planes: usize,
+    pilot: Vec<Option<Profile>>,
+}
+
+impl EnergyPlanes {
+    /// Planes fine enough for sets of up to `count` points. O(T) a direction, 512 directions. Progress: `energy`,
+    /// one step a direction.
+    pub fn new(mesh: &SurfaceMesh, count: usize, options: &EnergyOptions, progress: &dyn Progress) -> Self {
+        let scene = Scene::new(mesh);
+        let planes = planes_per_direction(count);
+        let pilot =
+            each_direction(PILOT, progress, |direction, shift| scene.profile(direction, planes, shift));
+        let pilot = pilot.into_iter().map(Option::flatten).collect();
+        Self { scene, options: *options, planes, pilot }
+    }
+
+    /// Measures points. O(n) a direction; when 512 directions do not suffice, O(T + n) for each of more.
+    /// Progress: `energy`, one step a direction, only in that case.
+    pub fn measure(
+        &self,
+        mesh: &SurfaceMesh,
+        points: &[SurfacePoint],
+        progress: &dyn Progress,
+    ) -> EnergyReport {
+        let positions: Vec<DVec3> = points.iter().map(|p| mesh.locate(p)).collect();
+        let pilot = |i: usize| self.pilot[i].as_ref().map_or([0.0; 2], |p| integrate(p, &positions));
+        let mut integrals = Integrals::of(&parallel::map(self.pilot.len(), pilot));
+        let error = integrals.relative_error();
+        if error > self.options.tolerance {
+            let work = self.scene.face_count() + points.len() + self.planes;
+            let most = self.options.work / work as f64 / BLOCKS as f64;
+            // A tenth more, because the error itself is only estimated.
+            let wanted =
+                1.1 * PILOT as f64 * (error / self.options.tolerance) * (error / self.options.tolerance);
+            let directions = wanted.min(most) as usize;
+            if directions > PILOT {
+                let all = each_direction(directions, progress, |direction, shift| {
+                    let profile = self.scene.profile(direction, self.planes, shift);
+                    profile.map_or([0.0; 2], |profile| integrate(&profile, &positions))
+                });
+                let all: Vec<[f64; 2]> = all.into_iter().map(|x| x.unwrap_or([f64::NAN; 2])).collect();
+                integrals = Integrals::of(&all);
+            }
+        }
+        let n = points.len() as f64;
+        let [discrepancy, mean_distance] = integrals.means;
+        EnergyReport {
+            eta: KAPPA * mesh.area().sqrt() / (n * n.sqrt()) / discrepancy,
+            mc: (discrepancy * n / mean_distance).sqrt(),
+            discrepancy,
+            relative_error: integrals.relative_error(),
+            directions: integrals.directions,
+            mean_distance,
+        }
+    }
+}
+
+/// The energy discrepancy and eta: see [`EnergyPlanes`], which measures several sets on one mesh at the price of
+/// one.
 pub fn energy(
     mesh: &SurfaceMesh,
     points: &[SurfacePoint],
     options: &EnergyOptions,
     progress: &dyn Progress,
 ) -> EnergyReport {
-    let scene = Scene::new(mesh, points);
-    let planes = planes_per_direction(points.len());
-    let mut integrals = Integrals::over(&scene, planes, PILOT, progress);
-    let error = integrals.relative_error();
-    if error > options.tolerance {
-        let work = (mesh.face_count() + points.len() + planes) as f64;
-        let most = options.work / work / BLOCKS as f64;
-        // A tenth more, because the error itself is only estimated.
-        let wanted = 1.1 * PILOT as f64 * (error / options.tolerance) * (error / options.tolerance);
-        let directions = wanted.min(most) as usize;
-        if directions > PILOT {
-            integrals = Integrals::over(&scene, planes, directions, progress);
+    EnergyPlanes::new(mesh, points.len(), options, progress).measure(mesh, points, progress)
+}
+
+/// `f` of each direction of all blocks and of a shift of the planes that is even in [0, 1); `None` where cancelled.
+fn each_direction<R: Send>(
+    directions: usize,
+    progress: &dyn Progress,
+    f: impl Fn(DVec3, f64) -> R + Sync + Send,
+) -> Vec<Option<R>> {
+    progress.begin("energy", (BLOCKS * directions) as u64);
+    let sets: Vec<_> = (0..BLOCKS).map(|block| testset::directions(directions, block)).collect();
+    parallel::map(BLOCKS * directions, |i| {
+        if progress.is_cancelled() {
+            return None;
         }
-    }
-    let n = points.len() as f64;
-    let [discrepancy, mean_distance] = integrals.means;
-    EnergyReport {
-        eta: KAPPA * mesh.area().sqrt() / (n * n.sqrt()) / discrepancy,
-        mc: (discrepancy * n / mean_distance).sqrt(),
-        discrepancy,
-        relative_error: integrals.relative_error(),
-        directions: integrals.directions,
-        mean_distance,
-    }
+        let result = f(sets[i / directions][i % directions], testset::radical_inverse(2, i as u32));
+        progress.advance(1);
+        Some(result)
+    })
 }
 
 /// D^2 and E|Y - Y'|, from each block of directions and from all.
@@ -106,21 +165,12 @@ struct Integrals {
 }
 
 impl Integrals {
-    fn over(scene: &Scene, planes: usize, directions: usize, progress: &dyn Progress) -> Self {
-        progress.begin("energy", (BLOCKS * directions) as u64);
-        let sets: Vec<_> = (0..BLOCKS).map(|block| testset::directions(directions, block)).collect();
-        let integrals = parallel::map(BLOCKS * directions, |i| {
-            if progress.is_cancelled() {
-                return [f64::NAN; 2];
-            }
-            let direction = sets[i / directions][i % directions];
-            let profile = scene.profile(direction, planes, testset::radical_inverse(2, i as u32));
-            progress.advance(1);
-            profile.map_or([0.0; 2], |profile| integrate(&profile))
-        });
+    /// From the integrals of each direction, block after block.
+    fn of(integrals: &[[f64; 2]]) -> Self {
+        let size = integrals.len() / BLOCKS;
         let blocks: Vec<[f64; 2]> =
-            integrals.chunks(directions).map(|block| mean(block).map(|m| 4.0 * m)).collect();
-        Self { means: mean(&blocks), blocks, directions: BLOCKS * directions }
+            integrals.chunks(size).map(|block| mean(block).map(|m| 4.0 * m)).collect();
+        Self { means: mean(&blocks), blocks, directions: integrals.len() }
     }
 
     /// The standard error of D^2 over D^2.
@@ -135,9 +185,9 @@ fn mean(values: &[[f64; 2]]) -> [f64; 2] {
 }
 
 /// The integrals over t of (F_n - F)^2 and F (1 - F).
-fn integrate(profile: &Profile) -> [f64; 2] {
+fn integrate(profile: &Profile, positions: &[DVec3]) -> [f64; 2] {
     let (mut squared, mut spread) = (0.0, 0.0);
-    for (&area, &points) in profile.area.iter().zip(&profile.points) {
+    for (&area, points) in profile.area.iter().zip(profile.points_below(positions)) {
         squared += (points - area) * (points - area);
         spread += area * (1.0 - area);
     }
@@ -152,8 +202,6 @@ fn planes_per_direction(count: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
     use crate::geometry::triangle;
     use crate::ids::FaceId;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::measure::norms::{Norms, Shares};
-use crate::measure::profile::Scene;
+use crate::measure::norms::{Norms, Shares, worst};
+use crate::measure::profile::{Profile, Scene};
 use crate::measure::testset;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
@@ -54,57 +54,87 @@ pub struct HalfSpaceReport {
     pub worst: Option<HalfSpace>,
 }
 
-/// Counts points in half-spaces and compares with the exact area of the surface inside (triangles cut by planes).
-/// The directions spread evenly over the sphere. Across each, planes are chosen among 1,024 equally
-/// distant ones so that half-spaces of every share of area come equally often: a random plane through a random
-/// place of the surface. The directions are fixed in space, so turning mesh and points together tries other
-/// half-spaces of the same family.
+/// The half-spaces of one mesh with their shares of area: made once, then any number of point sets are measured
+/// by them.
 ///
-/// O(T + n) a direction. Progress: `half-space`, one step a direction.
+/// The directions spread evenly over the sphere. Across each, planes are chosen among 1,024 equally distant ones so
+/// that half-spaces of every share of area come equally often: planes through random places of the surface. The
+/// shares of area are exact (triangles cut by planes). The directions are fixed in space, so turning mesh and
+/// points together tries other half-spaces of the same family.
+#[derive(Clone, Debug)]
+pub struct HalfSpaces {
+    directions: Vec<Direction>,
+}
+
+/// The half-spaces across one direction.
+#[derive(Clone, Debug)]
+struct Direction {
+    normal: DVec3,
+    profile: Profile,
+    /// The planes that are tried.
+    planes: Vec<usize>,
+}
+
+impl HalfSpaces {
+    /// O(T) a direction. Progress: `half-space`, one step a direction.
+    pub fn new(mesh: &SurfaceMesh, options: &HalfSpaceOptions, progress: &dyn Progress) -> Self {
+        progress.begin("half-space", options.directions as u64);
+        let scene = Scene::new(mesh);
+        let normals = testset::directions(options.directions, BLOCK);
+        let directions = parallel::map(normals.len(), |i| {
+            if progress.is_cancelled() {
+                return None;
+            }
+            let direction = Direction::new(&scene, normals[i], i as u32, options.offsets);
+            progress.advance(1);
+            direction
+        });
+        Self { directions: directions.into_iter().flatten().collect() }
+    }
+
+    /// Measures points; a point in the plane counts as inside. O(n) a direction.
+    pub fn measure(&self, mesh: &SurfaceMesh, points: &[SurfacePoint]) -> HalfSpaceReport {
+        let positions: Vec<DVec3> = points.iter().map(|p| mesh.locate(p)).collect();
+        let shares = parallel::map(self.directions.len(), |i| self.directions[i].shares(&positions)).concat();
+        let half_spaces = self.directions.iter().flat_map(Direction::half_spaces);
+        HalfSpaceReport { norms: Norms::over(&shares, points.len()), worst: worst(&shares, half_spaces) }
+    }
+}
+
+impl Direction {
+    fn new(scene: &Scene, normal: DVec3, index: u32, offsets: usize) -> Option<Self> {
+        let profile = scene.profile(normal, PLANES, 0.5)?;
+        let shift = testset::radical_inverse(2, index);
+        let planes = (0..offsets)
+            .map(|k| {
+                let share = (k as f64 + shift) / offsets as f64;
+                profile.area.partition_point(|&area| area < share).min(PLANES - 1)
+            })
+            .collect();
+        Some(Self { normal, profile, planes })
+    }
+
+    fn shares(&self, positions: &[DVec3]) -> Vec<Shares> {
+        let points = self.profile.points_below(positions);
+        let area = &self.profile.area;
+        self.planes.iter().map(|&k| Shares { area: area[k].clamp(0.0, 1.0), points: points[k] }).collect()
+    }
+
+    fn half_spaces(&self) -> impl Iterator<Item = HalfSpace> + '_ {
+        let half_space = |&k: &usize| HalfSpace { normal: self.normal, offset: self.profile.offset(k) };
+        self.planes.iter().map(half_space)
+    }
+}
+
+/// The norms of share of points - share of area over half-spaces: see [`HalfSpaces`], which measures several sets
+/// on one mesh at the price of one.
 pub fn half_space(
     mesh: &SurfaceMesh,
     points: &[SurfacePoint],
     options: &HalfSpaceOptions,
     progress: &dyn Progress,
 ) -> HalfSpaceReport {
-    progress.begin("half-space", options.directions as u64);
-    let scene = Scene::new(mesh, points);
-    let directions = testset::directions(options.directions, BLOCK);
-    let figures = parallel::map(directions.len(), |i| {
-        if progress.is_cancelled() {
-            return Vec::new();
-        }
-        let figures = along(&scene, directions[i], i as u32, options.offsets);
-        progress.advance(1);
-        figures
-    })
-    .concat();
-    let mut worst: Option<(f64, HalfSpace)> = None;
-    for (shares, half_space) in &figures {
-        let difference = (shares.points - shares.area).abs();
-        // A comparison with NaN is false: without points there is no worst half-space.
-        if difference > worst.map_or(-1.0, |(d, _)| d) {
-            worst = Some((difference, *half_space));
-        }
-    }
-    let shares: Vec<Shares> = figures.iter().map(|(shares, _)| *shares).collect();
-    HalfSpaceReport { norms: Norms::over(&shares, points.len()), worst: worst.map(|(_, h)| h) }
-}
-
-/// The half-spaces tried across one direction.
-fn along(scene: &Scene, normal: DVec3, index: u32, offsets: usize) -> Vec<(Shares, HalfSpace)> {
-    let Some(profile) = scene.profile(normal, PLANES, 0.5) else {
-        return Vec::new();
-    };
-    let shift = testset::radical_inverse(2, index);
-    (0..offsets)
-        .map(|k| {
-            let share = (k as f64 + shift) / offsets as f64;
-            let plane = profile.area.partition_point(|&area| area < share).min(PLANES - 1);
-            let shares = Shares { area: profile.area[plane].clamp(0.0, 1.0), points: profile.points[plane] };
-            (shares, HalfSpace { normal, offset: profile.low + plane as f64 * profile.width })
-        })
-        .collect()
+    HalfSpaces::new(mesh, options, progress).measure(mesh, points)
 }
 
 #[cfg(test)]
@@ -116,8 +146,8 @@ mod tests {
     #[test]
     fn a_cube_from_below_by_hand() {
         let mesh = testmesh::cube();
-        let profile = Scene::new(&mesh, &[]).profile(DVec3::Z, 10, 0.5).expect("a cube has a height");
-        assert!((profile.low - 0.05).abs() < 1e-15 && (profile.width - 0.1).abs() < 1e-15);
+        let profile = Scene::new(&mesh).profile(DVec3::Z, 10, 0.5).expect("a cube has a height");
+        assert!((profile.offset(0) - 0.05).abs() < 1e-15 && (profile.width - 0.1).abs() < 1e-15);
         for (k, area) in profile.area.iter().enumerate() {
             // The bottom at once, then the four sides.
             let exact = 1.0 / 6.0 + 4.0 / 6.0 * (0.05 + 0.1 * k as f64);
@@ -128,14 +158,15 @@ mod tests {
     #[test]
     fn a_square_has_no_height() {
         let mesh = testmesh::square(2);
-        assert!(Scene::new(&mesh, &[on_square(0.1, 0.2)]).profile(DVec3::Z, 8, 0.5).is_none());
+        assert!(Scene::new(&mesh).profile(DVec3::Z, 8, 0.5).is_none());
     }
 
     #[test]
     fn shares_of_area_part_the_unit_interval() {
-        let scene = Scene::new(&testmesh::sphere(5), &[]);
-        let figures = along(&scene, DVec3::new(0.6, 0.0, 0.8), 1, 8);
-        for (k, (shares, _)) in figures.iter().enumerate() {
+        let scene = Scene::new(&testmesh::sphere(5));
+        let direction =
+            Direction::new(&scene, DVec3::new(0.6, 0.0, 0.8), 1, 8).expect("a sphere has a width");
+        for (k, shares) in direction.shares(&[]).iter().enumerate() {
             assert!((shares.area - (k as f64 + 0.5) / 8.0).abs() < 2.0 / PLANES as f64, "{shares:?}");
         }
     }

@@ -11,7 +11,7 @@ use crate::parallel;
 use crate::progress::Progress;
 use crate::sample::SurfacePoint;
 
-/// Triangles or points that one step of the work takes.
+/// Triangles or points that one piece of the work takes.
 const STEP: usize = 1024;
 
 /// Longest edge, over the shortest length on which a test function changes, that the cubature takes in one piece.
@@ -44,56 +44,72 @@ pub struct IntegrationReport {
     pub mc: f64,
 }
 
-/// Compares means of smooth functions over the points with their means over the surface.
+/// The test functions of one mesh with their means over it: made once, then any number of point sets are measured
+/// by them.
 ///
-/// The functions take turns: bumps exp(-|x - c|^2 / (2 s^2)) with s = r, r/2 and r/4, and waves cos(k.(x - g) + p)
-/// with k towards c and |k| at most 4/r. Here g is the centre of the surface, r its root mean squared distance
-/// from g, and the places c spread evenly over its area: the functions depend on the mesh only, and move and
-/// scale with it. Means and deviations over the surface come from Radon's cubature of degree 5 (7 nodes a
-/// triangle), triangles halved until it errs by less than 1e-9 of a standard deviation.
-///
-/// O(functions (7 T + n)). Progress: `integration`, one step each 1,024 triangles or points.
+/// They take turns: bumps exp(-|x - c|^2 / (2 s^2)) with s = r, r/2 and r/4, and waves cos(k.(x - g) + p) with k
+/// towards c and |k| at most 4/r. Here g is the centre of the surface, r its root mean squared distance from g, and
+/// the places c spread evenly over its area: the functions depend on the mesh only, and move and scale with it.
+/// Means and deviations over the surface come from Radon's cubature of degree 5 (7 nodes a triangle), triangles
+/// halved until it errs by less than 1e-9 of a standard deviation.
+#[derive(Clone, Debug)]
+pub struct TestFunctions {
+    frame: Frame,
+    family: Vec<Function>,
+    moments: Vec<Moment>,
+}
+
+impl TestFunctions {
+    /// O(7 T) a function. Progress: `integration`, one step each 1,024 triangles.
+    pub fn new(mesh: &SurfaceMesh, options: &IntegrationOptions, progress: &dyn Progress) -> Self {
+        progress.begin("integration", mesh.face_count().div_ceil(STEP) as u64);
+        let frame = Frame::of(mesh);
+        let family = family(mesh, &frame, options.functions);
+        let moments = surface_moments(mesh, &frame, &family, PIECE, progress);
+        Self { frame, family, moments }
+    }
+
+    /// Measures points. O(n) a function.
+    pub fn measure(&self, mesh: &SurfaceMesh, points: &[SurfacePoint]) -> IntegrationReport {
+        let sums = parallel::map_chunks(points.len(), STEP, |range| {
+            let mut sums = vec![0.0; self.family.len()];
+            for point in &points[range] {
+                let x = mesh.locate(point) - self.frame.centre;
+                for (sum, function) in sums.iter_mut().zip(&self.family) {
+                    *sum += function.at(x);
+                }
+            }
+            sums
+        });
+        let n = points.len() as f64;
+        let (mut squared, mut counted) = (0.0, 0.0);
+        for (k, moment) in self.moments.iter().enumerate() {
+            let variance = moment.square - moment.mean * moment.mean;
+            // A function that is constant on this surface has no scale to measure its error by.
+            if variance > 1e-12 {
+                let error = sums.iter().map(|s| s[k]).sum::<f64>() / n - moment.mean;
+                squared += error * error / variance;
+                counted += 1.0;
+            }
+        }
+        let rms = (squared / counted).sqrt();
+        IntegrationReport { rms, mc: rms * n.sqrt() }
+    }
+}
+
+/// The error of means over the points of smooth functions: see [`TestFunctions`], which measures several sets on
+/// one mesh at the price of one.
 pub fn integration(
     mesh: &SurfaceMesh,
     points: &[SurfacePoint],
     options: &IntegrationOptions,
     progress: &dyn Progress,
 ) -> IntegrationReport {
-    let steps = mesh.face_count().div_ceil(STEP) + points.len().div_ceil(STEP);
-    progress.begin("integration", steps as u64);
-    let frame = Frame::of(mesh);
-    let family = family(mesh, &frame, options.functions);
-    let surface = surface_moments(mesh, &frame, &family, PIECE, progress);
-    let sums = parallel::map_chunks(points.len(), STEP, |range| {
-        let mut sums = vec![0.0; family.len()];
-        if progress.is_cancelled() {
-            return sums;
-        }
-        for point in &points[range] {
-            let x = mesh.locate(point) - frame.centre;
-            for (sum, function) in sums.iter_mut().zip(&family) {
-                *sum += function.at(x);
-            }
-        }
-        progress.advance(1);
-        sums
-    });
-    let n = points.len() as f64;
-    let (mut squared, mut counted) = (0.0, 0.0);
-    for (k, moment) in surface.iter().enumerate() {
-        let variance = moment.square - moment.mean * moment.mean;
-        // A function that is constant on this surface has no scale to measure its error by.
-        if variance > 1e-12 {
-            let error = sums.iter().map(|s| s[k]).sum::<f64>() / n - moment.mean;
-            squared += error * error / variance;
-            counted += 1.0;
-        }
-    }
-    let rms = (squared / counted).sqrt();
-    IntegrationReport { rms, mc: rms * n.sqrt() }
+    TestFunctions::new(mesh, options, progress).measure(mesh, points)
 }
 
 /// Where the surface lies and how large it is, by exact moments.
+#[derive(Clone, Copy, Debug)]
 struct Frame {
     centre: DVec3,
     radius: f64,
@@ -120,6 +136,7 @@ impl Frame {
 }
 
 /// A smooth function of the place relative to the centre.
+#[derive(Clone, Copy, Debug)]
 enum Function {
     Bump { centre: DVec3, rate: f64 },
     Wave { wave: DVec3, phase: f64 },
@@ -157,7 +174,7 @@ fn family(mesh: &SurfaceMesh, frame: &Frame, count: usize) -> Vec<Function> {
 }
 
 /// Means over the surface of a function and of its square.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Moment {
     mean: f64,
     square: f64,

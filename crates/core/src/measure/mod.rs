@@ -26,11 +26,11 @@ mod testmesh;
 #[cfg(test)]
 mod tests;
 
-pub use ball::{Ball, BallOptions, BallReport, ball};
+pub use ball::{Ball, BallOptions, BallReport, Balls, ball};
 pub use component::{ComponentReport, ComponentShare, components};
-pub use energy::{EnergyOptions, EnergyReport, energy};
-pub use half_space::{HalfSpace, HalfSpaceOptions, HalfSpaceReport, half_space};
-pub use integration::{IntegrationOptions, IntegrationReport, integration};
+pub use energy::{EnergyOptions, EnergyPlanes, EnergyReport, energy};
+pub use half_space::{HalfSpace, HalfSpaceOptions, HalfSpaceReport, HalfSpaces, half_space};
+pub use integration::{IntegrationOptions, IntegrationReport, TestFunctions, integration};
 pub use norms::{Norms, Shares};
 pub use patch::{PatchOptions, patch};
 pub use spacing::{SpacingOptions, SpacingReport, spacing};

@@ -49,6 +49,19 @@ impl Norms {
     }
 }
 
+/// The figure with the largest difference, the first of several; `None` when no difference is a number.
+pub(super) fn worst<F>(shares: &[Shares], figures: impl Iterator<Item = F>) -> Option<F> {
+    let mut worst: Option<(f64, F)> = None;
+    for (share, figure) in shares.iter().zip(figures) {
+        let difference = (share.points - share.area).abs();
+        // A comparison with NaN is false.
+        if difference > worst.as_ref().map_or(-1.0, |(largest, _)| *largest) {
+            worst = Some((difference, figure));
+        }
+    }
+    worst.map(|(_, figure)| figure)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

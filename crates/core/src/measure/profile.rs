@@ -1,39 +1,39 @@
-//! The surface and the points seen along a direction: their shares below parallel planes.
+//! The surface and points seen along a direction: their shares below parallel planes.
 
 use glam::DVec3;
 
 use crate::mesh::SurfaceMesh;
-use crate::sample::SurfacePoint;
 
 /// Triangles that reach over more cells than this are written as ramps, summed up once for all.
 const SHORT: usize = 12;
 
-/// What all directions share: the corners that faces use, around the middle of the mesh, and the points.
+/// The surface as all directions use it: the corners of its faces, around its middle.
+#[derive(Clone, Debug)]
 pub(super) struct Scene {
     corners: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
     shares: Vec<f64>,
-    points: Vec<DVec3>,
+    /// The middle of the mesh: far from it the last digits of the positions would be lost in the products.
     origin: DVec3,
 }
 
-/// The shares below the planes `low + k width`, `k` from 0, all between the ends of the mesh along the direction.
+/// The shares of area below the planes `low + k width`, `k` from 0, all between the ends of the mesh along the
+/// direction.
+#[derive(Clone, Debug)]
 pub(super) struct Profile {
-    /// Where the first plane lies: the product of the direction with its places.
-    pub(super) low: f64,
+    direction: DVec3,
+    origin: DVec3,
+    low: f64,
     /// From plane to plane.
     pub(super) width: f64,
     /// The share of area below or in each plane, exact up to rounding.
     pub(super) area: Vec<f64>,
-    /// The share of points below or in each plane.
-    pub(super) points: Vec<f64>,
 }
 
 impl Scene {
-    pub(super) fn new(mesh: &SurfaceMesh, points: &[SurfacePoint]) -> Self {
+    pub(super) fn new(mesh: &SurfaceMesh) -> Self {
         const UNUSED: u32 = u32::MAX;
         let (low, high) = mesh.bounds();
-        // Far from the origin the last digits of the positions would be lost in the products.
         let origin = (low + high) * 0.5;
         let mut place = vec![UNUSED; mesh.vertex_count()];
         let mut corners = Vec::new();
@@ -51,53 +51,68 @@ impl Scene {
             faces: faces.collect(),
             corners,
             shares: mesh.face_areas().iter().map(|a| a / mesh.area()).collect(),
-            points: points.iter().map(|p| mesh.locate(p) - origin).collect(),
             origin,
         }
     }
 
-    /// The shares below `cells` planes across `direction`, a unit vector; the first plane lies `shift` (0 to 1) of
-    /// the distance between planes above the lowest corner. `None` when the mesh has no extent that way.
+    pub(super) fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The shares below `planes` planes across `direction`, a unit vector; the first lies `shift` (0 to 1) of the
+    /// distance between planes above the lowest corner. `None` when the mesh has no extent that way.
     ///
-    /// O(vertices + triangles + points + cells), however many cells a triangle spans.
-    pub(super) fn profile(&self, direction: DVec3, cells: usize, shift: f64) -> Option<Profile> {
+    /// O(vertices + triangles + planes), however many planes cut a triangle.
+    pub(super) fn profile(&self, direction: DVec3, planes: usize, shift: f64) -> Option<Profile> {
         let mut along: Vec<f64> = self.corners.iter().map(|p| p.dot(direction)).collect();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for &t in &along {
             low = lesser(t, low);
             high = greater(t, high);
         }
-        let width = (high - low) / cells as f64;
+        let width = (high - low) / planes as f64;
         let scale = 1.0 / width;
         if !(width > 0.0 && scale.is_finite()) {
             return None;
         }
         // In units of cells; plane k lies at k + 1, so cell k holds what lies between the planes k - 1 and k.
-        let place = |t: f64| (t - low) * scale + (1.0 - shift);
         for t in &mut along {
-            *t = place(*t);
+            *t = (*t - low) * scale + (1.0 - shift);
         }
-        let mut mass = Mass::new(cells + 1);
+        let mut mass = Mass::new(planes + 1);
         for (corners, &share) in self.faces.iter().zip(&self.shares) {
             mass.add_triangle(corners.map(|v| along[v as usize]), share);
         }
         let mut area = mass.finish();
-        area.truncate(cells);
-        let mut counts = vec![0u32; cells + 1];
-        for p in &self.points {
-            // Rounding may put a point just outside the ends; the cast takes what is negative to 0.
-            counts[(place(p.dot(direction)) as u32 as usize).min(cells)] += 1;
+        area.truncate(planes);
+        Some(Profile { direction, origin: self.origin, low: low + shift * width, width, area })
+    }
+}
+
+impl Profile {
+    /// Where plane `plane` lies: the product of the direction with its places.
+    pub(super) fn offset(&self, plane: usize) -> f64 {
+        self.low + plane as f64 * self.width + self.origin.dot(self.direction)
+    }
+
+    /// The share of the points below or in each plane.
+    pub(super) fn points_below(&self, points: &[DVec3]) -> Vec<f64> {
+        let planes = self.area.len();
+        let scale = 1.0 / self.width;
+        let mut counts = vec![0u32; planes + 1];
+        for p in points {
+            let along = (*p - self.origin).dot(self.direction);
+            // Below the first plane the cast gives 0; rounding may put a point above the last cell.
+            counts[((((along - self.low) * scale) + 1.0) as u32 as usize).min(planes)] += 1;
         }
-        let count = self.points.len() as f64;
         let mut below = 0u32;
-        let points = counts[..cells]
+        counts[..planes]
             .iter()
-            .map(|&c| {
-                below += c;
-                f64::from(below) / count
+            .map(|&count| {
+                below += count;
+                f64::from(below) / points.len() as f64
             })
-            .collect();
-        Some(Profile { low: low + shift * width + self.origin.dot(direction), width, area, points })
+            .collect()
     }
 }
 

@@ -89,6 +89,8 @@ pub struct Caster {
     tree: CwBvh,
     /// In the order of the tree's leaves.
     triangles: Vec<Triangle>,
+    /// Half the diagonal of the box around the mesh, in the cube.
+    reach: f64,
     /// For each face its unit normal.
     normals: Vec<DVec3>,
     /// For each face whether it is seen from both sides.
@@ -116,7 +118,8 @@ impl Caster {
             })
             .collect();
         let normals = mesh.topology().face_ids().map(|face| mesh.face_normal(face)).collect();
-        Self { frame, tree, triangles, normals, two_sided: two_sided(mesh) }
+        let reach = 0.5 * mesh.diagonal() * frame.scale;
+        Self { frame, tree, triangles, reach, normals, two_sided: two_sided(mesh) }
     }
 
     /// Whether a face is seen from both sides: its component has a border.
@@ -145,25 +148,72 @@ impl Caster {
 
     /// Whether nothing but `face` itself lies between its place `at` and the camera.
     pub fn is_clear(&self, camera: &Camera, face: FaceId, at: DVec3) -> bool {
-        let origin = self.frame.enter(at);
-        let (direction, length) = match *camera {
+        let origin = self.enter(at);
+        let (direction, length) = self.aim(camera, origin);
+        if self.triangles.is_empty() || !direction.is_finite() {
+            return true;
+        }
+        self.tree.ray_traverse_miss(single_ray(origin, direction, length), |_, slot| {
+            if self.blocks(slot, face, origin, direction, length) { 0.0 } else { f32::INFINITY }
+        })
+    }
+
+    pub(super) fn face_count(&self) -> usize {
+        self.normals.len()
+    }
+
+    /// Half the diagonal of the box around the mesh, in the cube.
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// A place in the cube.
+    #[inline]
+    pub(super) fn enter(&self, at: DVec3) -> DVec3 {
+        self.frame.enter(at)
+    }
+
+    /// The direction from a place of the cube to the camera and how far it is.
+    #[inline]
+    pub(super) fn aim(&self, camera: &Camera, origin: DVec3) -> (DVec3, f64) {
+        match *camera {
             Camera::Orthographic { toward } => (toward, f64::INFINITY),
             Camera::Perspective { eye } => {
                 let to = self.frame.enter(eye) - origin;
                 let length = to.length();
                 (to / length, length)
             }
-        };
-        if self.triangles.is_empty() || !direction.is_finite() {
-            return true;
         }
-        self.tree.ray_traverse_miss(single_ray(origin, direction, length), |_, slot| {
-            let triangle = &self.triangles[slot];
-            match triangle.meet(origin, direction) {
-                Some((t, _, _)) if t > NEAREST_HIT && t < length && triangle.face != face => 0.0,
-                _ => f32::INFINITY,
-            }
-        })
+    }
+
+    /// Whether the triangle at `slot` lies between a place of `face` and the camera.
+    #[inline]
+    pub(super) fn blocks(
+        &self,
+        slot: usize,
+        face: FaceId,
+        origin: DVec3,
+        direction: DVec3,
+        length: f64,
+    ) -> bool {
+        let triangle = &self.triangles[slot];
+        triangle
+            .meet(origin, direction)
+            .is_some_and(|(t, _, _)| t > NEAREST_HIT && t < length && triangle.face != face)
+    }
+
+    /// The corners of the triangle at `slot`, in the cube.
+    #[inline]
+    pub(super) fn slot_corners(&self, slot: usize) -> [DVec3; 3] {
+        let Triangle { corner, sides: [ab, ac], .. } = self.triangles[slot];
+        [corner, corner + ab, corner + ac]
+    }
+
+    /// Whether the triangle at `slot` is turned towards the camera or seen from both sides.
+    #[inline]
+    pub(super) fn is_slot_facing(&self, camera: &Camera, slot: usize) -> bool {
+        let Triangle { corner, face, .. } = self.triangles[slot];
+        self.two_sided[face.index()] || self.aim(camera, corner).0.dot(self.normals[face.index()]) > 0.0
     }
 
     /// The first face that the ray meets, from either side. Of several at the same distance the one with the

@@ -3,6 +3,7 @@
 //! Trees of boxes only leave out triangles that cannot matter; what decides is arithmetic in double precision on
 //! the triangles themselves, so the answers do not depend on the shape of the tree nor on the platform.
 
+mod bins;
 mod caster;
 mod frame;
 mod nearest;

@@ -112,6 +112,40 @@ fn the_tree_leaves_out_nothing() {
 }
 
 #[test]
+fn many_places_at_once_are_seen_as_one_at_a_time() {
+    let mut needles = shapes::uv_sphere(100, 6);
+    join(&mut needles, &moved(shapes::block(DVec3::new(9.0, 0.01, 0.01), [1, 1, 1]), |p| p - 2.0));
+    join(&mut needles, &moved(shapes::square(2), |p| p * 3.0 + DVec3::new(0.0, 0.0, 1.5)));
+    let bodies =
+        [needles, shapes::scan_like(8, 3000), shapes::trefoil(200, 8, 0.4), shapes::cube(1), shapes::cup(1)];
+    for soup in bodies {
+        let body = mesh(&soup);
+        let caster = Caster::new(&body);
+        let size = body.diagonal();
+        let places: Vec<(FaceId, DVec3)> =
+            crate::baseline::hilbert(&body, 20_000, 1).iter().map(|p| (p.face, body.locate(p))).collect();
+        let eye = |x, y, z| Camera::Perspective { eye: DVec3::new(x, y, z) * size };
+        let cameras = [
+            far(0.0, 0.0, -1.0),
+            far(1.0, 0.0, 0.0),
+            far(0.3, -0.8, 0.4),
+            eye(0.0, 0.0, 0.9),
+            eye(1.0, -1.5, 0.7),
+            eye(0.0, 0.1, 0.0),
+        ];
+        for camera in cameras {
+            let at_once = caster.visible(&camera, &places);
+            for (seen, (face, at)) in at_once.iter().zip(&places) {
+                assert_eq!(*seen, caster.sees(&camera, *face, *at), "{camera:?} {face:?} {at}");
+            }
+            // From inside a closed body nothing is seen.
+            let inside = matches!(camera, Camera::Perspective { eye } if eye.length() < 0.2 * size);
+            assert!(inside || at_once.iter().any(|&seen| seen));
+        }
+    }
+}
+
+#[test]
 fn rays_from_inside_meet_the_sphere_at_its_radius() {
     let ball = mesh(&shapes::uv_sphere(40, 40));
     let caster = Caster::new(&ball);

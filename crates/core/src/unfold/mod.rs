@@ -10,6 +10,7 @@ use glam::DVec2;
 use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
+use crate::sample::SurfacePoint;
 use crate::segment::Segmentation;
 
 /// What lies on the other side of a border edge of a strip.
@@ -110,6 +111,14 @@ impl Strip {
 }
 
 impl Strips {
+    /// The strip that holds a surface point and where it lies in it.
+    pub fn lay_point(&self, point: &SurfacePoint) -> (StripId, DVec2) {
+        let place = self.places[point.face.index()];
+        let [a, b, c] = self.strips[place.strip.index()].triangle(place.index as usize);
+        let [u, v, w] = point.barycentric;
+        (place.strip, a * u + b * v + c * w)
+    }
+
     /// The length of all border edges whose gap is wider than `tolerance`.
     pub fn open_border_length(&self, tolerance: f64) -> f64 {
         self.strips

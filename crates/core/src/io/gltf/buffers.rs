@@ -9,7 +9,7 @@ use gltf::buffer::{Source, View};
 
 use crate::io::detect::MeshFormat;
 use crate::io::gltf::malformed;
-use crate::io::read::{Place, ReadError, Resolver};
+use crate::io::read::{Place, ReadError, Resolver, brief};
 
 /// All buffers of a document, at least as long as it says.
 pub(super) struct Buffers(Vec<Vec<u8>>);
@@ -33,7 +33,7 @@ impl Buffers {
                     }
                     None => resolver(&percent_decoded(uri)).map_err(|reason| ReadError::Missing {
                         format: MeshFormat::Gltf,
-                        uri: uri.into(),
+                        uri: brief(uri),
                         reason,
                     })?,
                 },

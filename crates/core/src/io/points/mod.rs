@@ -17,7 +17,8 @@ use crate::sample::Sample;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum PointFormat {
-    /// PLY, binary little-endian: `double` x y z, `float` nx ny nz, and the other columns of [`COLUMNS`].
+    /// PLY, binary little-endian: `double` x y z, `float` nx ny nz, `int` face and
+    /// strip, `uchar` origin, `double` for the other columns of [`COLUMNS`].
     Ply,
     /// PLY, ASCII, with the same properties.
     PlyAscii,

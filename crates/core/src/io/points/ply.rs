@@ -22,7 +22,8 @@ pub(super) fn write(rows: &[PointRow], encoding: Encoding, mut out: &mut dyn io:
     for name in COLUMNS {
         let scalar = match name {
             "nx" | "ny" | "nz" => ScalarType::Float,
-            "face" | "strip" => ScalarType::UInt,
+            // Some readers know no unsigned 32-bit numbers; faces and strips are below 2^31.
+            "face" | "strip" => ScalarType::Int,
             "origin" => ScalarType::UChar,
             _ => ScalarType::Double,
         };
@@ -80,13 +81,14 @@ impl PropertyAccess for Row<'_> {
         })
     }
 
-    fn get_uint(&self, name: &str) -> Option<u32> {
+    fn get_int(&self, name: &str) -> Option<i32> {
         let sample = &self.0?.sample;
-        Some(match name {
+        let id = match name {
             "face" => sample.point.face.0,
             "strip" => sample.strip.0,
             _ => return None,
-        })
+        };
+        i32::try_from(id).ok()
     }
 
     fn get_uchar(&self, _: &str) -> Option<u8> {

@@ -47,7 +47,7 @@ fn texts_by_hand() {
     assert!(json.starts_with(&format!("[\n{{\"position\":[0.1,-2.0,1e-7],{fields},\n")), "{json}");
     assert!(json.ends_with(&format!("{fields}\n]\n")), "{json}");
     let ply = text(PointFormat::PlyAscii);
-    assert!(ply.contains("property float nz\nproperty uint face\nproperty double b0\n"), "{ply}");
+    assert!(ply.contains("property float nz\nproperty int face\nproperty double b0\n"), "{ply}");
     assert!(ply.contains("end_header\n0.1 -2 0.0000001 0 0.6 -0.8 7 0.5 0.25 0.25 3 0.1 2 1\n"), "{ply}");
 }
 
@@ -66,7 +66,7 @@ fn binary_ply_has_all_columns() {
     let bytes = written(PointFormat::Ply, &[row(DVec3::ONE), row(DVec3::ZERO)]);
     let end = b"end_header\n";
     let head = bytes.windows(end.len()).position(|w| w == end).expect("a head") + end.len();
-    // 8 doubles, 3 floats, 2 uints, 1 uchar.
+    // 8 doubles, 3 floats, 2 ints, 1 uchar.
     assert_eq!(bytes.len() - head, 2 * (8 * 8 + 3 * 4 + 2 * 4 + 1));
     assert_eq!(bytes[bytes.len() - 1], 1);
 }

@@ -24,10 +24,10 @@ pub struct ViewOptions {
     /// How many cameras, half of them orthographic. `l2` scatters by about 1 / sqrt(2 views) of itself between
     /// values of `seed`. Default: 128.
     pub views: usize,
-    /// How many times each view is also taken with random occluders in the way. Costs no rays. Default: 2.
+    /// How many times each view is also taken with random occluders in the way; costs little. Default: 2.
     pub occlusions: usize,
     /// At how many places of the surface the visible area is sampled. More lower the reference error at cost in
-    /// proportion. Default: 300,000, enough for the best sets of 10,000 points.
+    /// proportion. Default: 400,000: on the horse a tenth of what the best sets of 10,000 points measure.
     pub nodes: usize,
     /// Turns the cameras and chooses occluders and places. Default: 0.
     pub seed: u64,
@@ -35,7 +35,7 @@ pub struct ViewOptions {
 
 impl Default for ViewOptions {
     fn default() -> Self {
-        Self { views: 128, occlusions: 2, nodes: 300_000, seed: 0 }
+        Self { views: 128, occlusions: 2, nodes: 400_000, seed: 0 }
     }
 }
 
@@ -102,28 +102,27 @@ pub struct Views {
 }
 
 impl Views {
-    /// Casts the rays of the reference: half of `views * nodes`, about a microsecond each. `progress` counts
-    /// views; when cancelled the result is not to be used.
+    /// Finds the visible areas, in O(views (nodes + faces)): about 60 ms a view for the horse (97k faces) and 400,000
+    /// nodes on one core. `progress` counts views; when cancelled the result is not to be used.
     pub fn new(mesh: &SurfaceMesh, options: &ViewOptions, progress: &dyn Progress) -> Self {
         let caster = Caster::new(mesh);
         let order = HilbertOrder::new(mesh);
         let mut random = Random::new(options.seed, purpose::NODES);
-        let halves = [(); 2].map(|()| {
-            let points = order.points(options.nodes.div_ceil(2), random.unit(), random.unit());
-            places(mesh, &points)
-        });
+        let half = options.nodes.div_ceil(2);
+        let nodes = [(); 2].map(|()| order.points(half, random.unit(), random.unit())).concat();
+        let nodes = places(mesh, &nodes);
         let viewpoints = camera::viewpoints(mesh, options.views, options.seed);
         progress.begin("view", viewpoints.len() as u64);
         let views = parallel::map(viewpoints.len(), |i| {
             let viewpoint = viewpoints[i];
             let mut random = Random::new(options.seed, purpose::OCCLUDERS + i as u64);
             let occluders: Vec<Occluders> = (0..options.occlusions)
-                .filter_map(|_| Occluders::random(&viewpoint, &halves[0], &mut random))
+                .filter_map(|_| Occluders::random(&viewpoint, &nodes, &mut random))
                 .collect();
             let unknown = AreaShare { share: f64::NAN, error: f64::NAN };
             let mut view = View { viewpoint, occluders, area: unknown, occluded_areas: Vec::new() };
             if !progress.is_cancelled() {
-                view.find_areas(mesh, &caster, &halves);
+                view.find_areas(mesh, &caster, &nodes);
                 progress.advance(1);
             }
             view
@@ -131,12 +130,13 @@ impl Views {
         Self { caster, views }
     }
 
-    /// Measures points. Casts half of `views * points` rays.
+    /// Measures points: O(views points), at most a microsecond each.
     pub fn measure(&self, mesh: &SurfaceMesh, points: &[SurfacePoint]) -> ViewReport {
         let places = places(mesh, points);
         let tallies = parallel::map(self.views.len(), |i| {
             let view = &self.views[i];
-            Tally::of(&view.viewpoint, &view.occluders, &self.caster, &places)
+            let seen = self.caster.visible(&view.viewpoint.camera, &places);
+            view.tally(&self.caster, &places, &seen)
         });
         let share = |count: usize| count as f64 / points.len() as f64;
         let (mut plain, mut occluded) = (Vec::new(), Vec::new());
@@ -203,45 +203,42 @@ struct Tally {
     unoccluded: Vec<usize>,
 }
 
-impl Tally {
-    fn of(viewpoint: &Viewpoint, occluders: &[Occluders], caster: &Caster, places: &[Place]) -> Self {
-        let mut tally = Self { facing: 0, visible: 0, unoccluded: vec![0; occluders.len()] };
-        for &(face, at) in places {
-            if !caster.is_facing(&viewpoint.camera, face, at) {
-                continue;
-            }
-            tally.facing += 1;
-            if !caster.is_clear(&viewpoint.camera, face, at) {
-                continue;
-            }
+impl View {
+    /// Counts places, given which of them the camera sees.
+    fn tally(&self, caster: &Caster, places: &[Place], seen: &[bool]) -> Tally {
+        let camera = &self.viewpoint.camera;
+        let facing = places.iter().filter(|&&(face, at)| caster.is_facing(camera, face, at)).count();
+        let mut tally = Tally { facing, visible: 0, unoccluded: vec![0; self.occluders.len()] };
+        for (&(_, at), _) in places.iter().zip(seen).filter(|&(_, &seen)| seen) {
             tally.visible += 1;
-            let image = viewpoint.image(at);
-            for (count, occluders) in tally.unoccluded.iter_mut().zip(occluders) {
+            let image = self.viewpoint.image(at);
+            for (count, occluders) in tally.unoccluded.iter_mut().zip(&self.occluders) {
                 *count += usize::from(!occluders.hide(image));
             }
         }
         tally
     }
-}
 
-impl View {
-    fn find_areas(&mut self, mesh: &SurfaceMesh, caster: &Caster, halves: &[Vec<Place>; 2]) {
+    /// Finds the visible areas from nodes of which each half is a sample of the whole surface.
+    fn find_areas(&mut self, mesh: &SurfaceMesh, caster: &Caster, nodes: &[Place]) {
+        let camera = &self.viewpoint.camera;
         let mut facing = 0.0;
         for face in mesh.topology().face_ids() {
             let [a, _, _] = mesh.triangle(face);
-            if caster.is_facing(&self.viewpoint.camera, face, a) {
+            if caster.is_facing(camera, face, a) {
                 facing += mesh.face_area(face);
             }
         }
         let facing = facing / mesh.area();
-        let tallies = [0, 1].map(|h| Tally::of(&self.viewpoint, &self.occluders, caster, &halves[h]));
-        let nodes = halves[0].len() as f64;
-        let hidden = |h: usize| (tallies[h].facing - tallies[h].visible) as f64 / nodes;
+        let seen = caster.visible(camera, nodes);
+        let half = nodes.len() / 2;
+        let tallies = [0..half, half..nodes.len()].map(|h| self.tally(caster, &nodes[h.clone()], &seen[h]));
+        let hidden = |h: usize| (tallies[h].facing - tallies[h].visible) as f64 / half as f64;
         self.area = AreaShare::from_halves(facing - hidden(0), facing - hidden(1));
         self.occluded_areas = (0..self.occluders.len())
             .map(|o| {
-                let seen = |h: usize| tallies[h].unoccluded[o] as f64 / nodes;
-                AreaShare::from_halves(seen(0), seen(1))
+                let share = |h: usize| tallies[h].unoccluded[o] as f64 / half as f64;
+                AreaShare::from_halves(share(0), share(1))
             })
             .collect();
     }
