@@ -7,6 +7,7 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use ldwrap::io::points::PointFormat;
+use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::shapes::Shape;
 
 use crate::methods::Method;
@@ -91,15 +92,16 @@ pub(crate) struct RequestArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Segmentation")]
 pub(crate) struct SegmentArgs {
-    /// The largest angle between the normals of neighbours, in degrees, that counts as almost flat [default: 40]
-    #[arg(long, value_name = "DEG", value_parser = angle)]
-    pub(crate) flatness_angle: Option<f64>,
-    /// Strips with a smaller share of all triangles go on growing whatever the angle [default: 0.002]
-    #[arg(long, value_name = "SHARE", value_parser = share)]
-    pub(crate) smallest_share: Option<f64>,
-    /// In which order a strip grows [default: flattest-first]
-    #[arg(long, value_enum, value_name = "ORDER")]
-    pub(crate) growth: Option<GrowthArg>,
+    /// The largest angle between the normals of neighbours, in degrees, that counts as almost flat
+    #[arg(long, value_name = "DEG", value_parser = angle,
+        default_value_t = degrees(SegmentOptions::default().flatness_angle))]
+    pub(crate) flatness_angle: f64,
+    /// Strips with a smaller share of all triangles go on growing whatever the angle
+    #[arg(long, value_name = "SHARE", value_parser = share, default_value_t = SegmentOptions::default().smallest_share)]
+    pub(crate) smallest_share: f64,
+    /// In which order a strip grows
+    #[arg(long, value_enum, value_name = "ORDER", default_value_t = GrowthArg::from(SegmentOptions::default().order))]
+    pub(crate) growth: GrowthArg,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -110,6 +112,32 @@ pub(crate) enum GrowthArg {
     FlattestFirst,
     /// The longest edge first
     LongestFirst,
+}
+
+impl From<GrowthOrder> for GrowthArg {
+    fn from(order: GrowthOrder) -> Self {
+        match order {
+            GrowthOrder::BoundaryWalk => Self::BoundaryWalk,
+            GrowthOrder::FlattestFirst => Self::FlattestFirst,
+            GrowthOrder::LongestFirst => Self::LongestFirst,
+        }
+    }
+}
+
+impl From<GrowthArg> for GrowthOrder {
+    fn from(arg: GrowthArg) -> Self {
+        match arg {
+            GrowthArg::BoundaryWalk => Self::BoundaryWalk,
+            GrowthArg::FlattestFirst => Self::FlattestFirst,
+            GrowthArg::LongestFirst => Self::LongestFirst,
+        }
+    }
+}
+
+/// Degrees as a person would write them: 60, not 59.99999999999999.
+pub(crate) fn degrees(radians: f64) -> f64 {
+    const DIGITS: f64 = 1e9;
+    (radians.to_degrees() * DIGITS).round() / DIGITS
 }
 
 /// The point set on the planar domain.

@@ -5,10 +5,10 @@ use std::path::Path;
 use ldwrap::equalize::EqualizeOptions;
 use ldwrap::io::points::PointFormat;
 use ldwrap::pipeline::{Options, Request};
-use ldwrap::segment::{GrowthOrder, SegmentOptions};
+use ldwrap::segment::SegmentOptions;
 use ldwrap::sequence::Sequence;
 
-use crate::args::{GrowthArg, RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs};
+use crate::args::{RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs};
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
 
@@ -65,10 +65,12 @@ fn point_output(path: &Path, format: Option<PointFormat>, targets: &mut Targets)
 fn point_format(path: &Path) -> Outcome<PointFormat> {
     let extension = path.extension().map(|extension| extension.to_string_lossy());
     extension.as_deref().and_then(PointFormat::from_name).ok_or_else(|| {
-        let what = extension.as_deref().map_or("no extension".to_owned(), |e| format!("the extension .{e}"));
+        let what = match &extension {
+            Some(extension) => format!("no point format has the extension .{extension}"),
+            None => "its name has no extension to tell the format by".to_owned(),
+        };
         Failure::wrong_use(format!(
-            "{}: no point format has {what}: known are .ply, .xyz, .csv, .npy, .json and .obj; or choose one with \
-             --format",
+            "{}: {what}: known are .ply, .xyz, .csv, .npy, .json and .obj; or choose one with --format",
             path.display()
         ))
     })
@@ -105,21 +107,12 @@ fn request(args: &RequestArgs) -> Request {
         .unwrap_or(Options::default().request)
 }
 
-/// How the surface is cut: what was not given has the library's default.
+/// How the surface is cut.
 pub(crate) fn segment_options(args: &SegmentArgs) -> SegmentOptions {
-    let default = SegmentOptions::default();
     SegmentOptions {
-        flatness_angle: args.flatness_angle.map_or(default.flatness_angle, f64::to_radians),
-        smallest_share: args.smallest_share.unwrap_or(default.smallest_share),
-        order: args.growth.map_or(default.order, growth_order),
-    }
-}
-
-fn growth_order(arg: GrowthArg) -> GrowthOrder {
-    match arg {
-        GrowthArg::BoundaryWalk => GrowthOrder::BoundaryWalk,
-        GrowthArg::FlattestFirst => GrowthOrder::FlattestFirst,
-        GrowthArg::LongestFirst => GrowthOrder::LongestFirst,
+        flatness_angle: args.flatness_angle.to_radians(),
+        smallest_share: args.smallest_share,
+        order: args.growth.into(),
     }
 }
 

@@ -9,6 +9,7 @@ use ldwrap::unfold::Strip;
 use ldwrap::{RepairReport, SurfaceMesh};
 use serde::Serialize;
 
+use crate::args::degrees;
 use crate::progress::Seconds;
 use crate::quality::Quality;
 
@@ -83,7 +84,7 @@ impl<'a> Report<'a> {
                 sequence: options.sequence,
                 seed: options.seed,
                 tolerance: options.tolerance,
-                flatness_angle: options.segment.flatness_angle.to_degrees(),
+                flatness_angle: degrees(options.segment.flatness_angle),
                 smallest_share: options.segment.smallest_share,
                 growth: options.segment.order,
                 equalize: options.equalize.is_some(),

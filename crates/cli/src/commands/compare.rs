@@ -18,7 +18,7 @@ use crate::points;
 use crate::progress::Stages;
 use crate::quality::{Judge, Quality};
 use crate::report::{self, MeshReport};
-use crate::table::{self, MEASURES, Row, Summary};
+use crate::table::{self, MEASURES, Measure, Row, Summary};
 
 /// One measured set of points.
 #[derive(Serialize)]
@@ -190,7 +190,7 @@ fn panels(rows: &[Row], trials: &[Trial]) -> Vec<Panel> {
             names.push(&row.method);
         }
     }
-    let panel = |(title, value, error): (&str, fn(&Quality) -> f64, fn(&Quality) -> f64)| {
+    let panel = |measure: &Measure, error: fn(&Quality) -> f64| {
         let mean = |method: &str, count: usize| {
             let of = trials.iter().filter(|trial| trial.method == method && trial.count == count);
             Summary::of(&of.map(|trial| error(&trial.quality)).collect::<Vec<f64>>()).mean
@@ -202,12 +202,14 @@ fn panels(rows: &[Row], trials: &[Trial]) -> Vec<Panel> {
                 points: counts.map(|count| (count as f64, mean(name, count))).collect(),
             }
         };
-        let random = |trial: &Trial| (trial.count as f64, error(&trial.quality) / value(&trial.quality));
+        // The error over its ratio to that of random points is the error of random points.
+        let random =
+            |trial: &Trial| (trial.count as f64, error(&trial.quality) / (measure.value)(&trial.quality));
         Panel {
-            title: title.replace('_', " "),
+            title: measure.name.replace('_', " "),
             lines: names.iter().map(line).collect(),
             anchor: trials.first().map(random),
         }
     };
-    MEASURES.iter().filter_map(|m| Some(panel((m.name, m.value, m.error?)))).collect()
+    MEASURES.iter().filter_map(|measure| Some(panel(measure, measure.error?))).collect()
 }

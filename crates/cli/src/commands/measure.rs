@@ -67,33 +67,36 @@ pub(crate) fn run(args: &MeasureArgs, quiet: bool) -> Outcome {
 
 /// The measures as a table for people.
 fn text(quality: &Quality) -> String {
-    let Quality { energy, ball, half_space, patch, view, view_occluded, integration, spacing, components } =
-        quality;
+    let q = quality;
     let mut text = String::new();
-    let mut line = |what: &str, value: String| {
-        let _ = writeln!(text, "  {what:<16} {value}");
+    let mut line = |what: &str, ratio: &str, more: String| {
+        let _ = writeln!(text, "  {what:<16} {ratio:<8} {more}");
     };
-    line("", "against random points (1 is random, less is better), then the error itself".into());
-    line("energy", format!("{:<8.3} eta {:.3} (1 is the best possible)", energy.mc, energy.eta));
-    let norms = |n: &Norms| {
-        format!("{:<8.3} mean {:.2e}, root mean square {:.2e}, largest {:.2e}", n.mc, n.l1, n.l2, n.linf)
-    };
-    line("balls", norms(ball));
-    line("half-spaces", norms(half_space));
-    line("patches", norms(patch));
-    line("views", norms(view));
-    line("views, occluded", norms(view_occluded));
-    line("integration", format!("{:<8.3} root mean square {:.2e}", integration.mc, integration.rms));
+    line("", "ratio", "the error over that of as many random points; less is better".into());
+    line("energy", &digits(q.energy.mc), format!("eta {} (1 is the best possible)", digits(q.energy.eta)));
+    for (what, norms) in [
+        ("balls", &q.ball),
+        ("half-spaces", &q.half_space),
+        ("patches", &q.patch),
+        ("views", &q.view),
+        ("views, occluded", &q.view_occluded),
+    ] {
+        let Norms { linf, l1, l2, mc } = norms;
+        line(what, &digits(*mc), format!("root mean square {l2:.2e}, mean {l1:.2e}, largest {linf:.2e}"));
+    }
+    line("integration", &digits(q.integration.mc), format!("root mean square {:.2e}", q.integration.rms));
+    let [min, mean, cover] = [q.spacing.min, q.spacing.mean, q.spacing.cover].map(digits);
     line(
         "spacing",
-        format!(
-            "smallest {:.3}, mean {:.3}, covering radius {:.3} (in distances of the hexagonal lattice)",
-            spacing.min, spacing.mean, spacing.cover
-        ),
+        "",
+        format!("smallest {min}, mean {mean}, covering radius {cover}, in hexagonal distances"),
     );
-    line(
-        "components",
-        format!("{}, the worst share is off by {:.2} points", components.count, components.worst),
-    );
+    let worst = digits(q.components.worst);
+    line("components", "", format!("{}, a share is off by {worst} points at most", q.components.count));
     text
+}
+
+/// Three digits behind the point; a dash for what does not exist, such as the spacing of one point.
+fn digits(value: f64) -> String {
+    if value.is_finite() { format!("{value:.3}") } else { "-".to_owned() }
 }

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use ldwrap::SurfaceMesh;
 
-/// Looks along parallel lines and fits the mesh into the picture. Files do not say which way is up; y is taken.
+/// Looks along parallel lines and fits the mesh into the picture. Files do not say which way is up: see [`Frame`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Camera {
     right: DVec3,
@@ -16,11 +16,60 @@ pub(crate) struct Camera {
 /// How much of the picture the mesh fills.
 const FILLED: f64 = 0.92;
 
+/// How much larger the mesh's foot must be along z for z to be taken as up.
+const CLEARLY: f64 = 1.5;
+
+/// The mesh's own directions, guessed.
+struct Frame {
+    right: DVec3,
+    up: DVec3,
+    front: DVec3,
+}
+
+impl Frame {
+    /// y is up and z in front, as most files have it; or z is up and -y in front, if the mesh stands on its lowest
+    /// points much better that way.
+    fn guess(mesh: &SurfaceMesh) -> Self {
+        if foot(mesh, DVec3::Z) > CLEARLY * foot(mesh, DVec3::Y) {
+            Self { right: DVec3::X, up: DVec3::Z, front: -DVec3::Y }
+        } else {
+            Self { right: DVec3::X, up: DVec3::Y, front: DVec3::Z }
+        }
+    }
+
+    /// From the front, right and above, more from where the mesh is wider.
+    fn three_quarter(&self, mesh: &SurfaceMesh) -> DVec3 {
+        let (low, high) = mesh.bounds();
+        let extent = |axis: DVec3| (high - low).dot(axis.abs());
+        let (right, front) =
+            if extent(self.front) > extent(self.right) { (0.76, 0.55) } else { (0.55, 0.76) };
+        (right * self.right + 0.36 * self.up + front * self.front).normalize()
+    }
+}
+
+/// The share of its box's base that a mesh stands on when `up` is up: the box around what lies in the lowest
+/// three percent.
+fn foot(mesh: &SurfaceMesh, up: DVec3) -> f64 {
+    let (low, high) = mesh.bounds();
+    let level = low.dot(up) + 0.03 * (high - low).dot(up);
+    let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for corner in mesh.topology().faces().iter().flatten() {
+        let p = mesh.position(*corner);
+        if p.dot(up) <= level {
+            least = least.min(p);
+            most = most.max(p);
+        }
+    }
+    let sides = (most - least) / (high - low);
+    [DVec3::X, DVec3::Y, DVec3::Z].iter().filter(|&&axis| axis != up).map(|&axis| sides.dot(axis)).product()
+}
+
 impl Camera {
-    /// From the front, right and above, with all of `mesh` in a picture of `size` pixels.
+    /// From the front, right and above (as guessed), with all of `mesh` in a picture of `size` pixels.
     pub(crate) fn three_quarter(mesh: &SurfaceMesh, size: DVec2) -> Self {
-        let toward = DVec3::new(0.55, 0.36, 0.76).normalize();
-        let right = DVec3::Y.cross(toward).normalize();
+        let frame = Frame::guess(mesh);
+        let toward = frame.three_quarter(mesh);
+        let right = frame.up.cross(toward).normalize();
         let up = toward.cross(right);
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for corner in mesh.topology().faces().iter().flatten() {
@@ -55,6 +104,6 @@ impl Camera {
     /// viewer's left shoulder, and some from everywhere.
     pub(crate) fn brightness(&self, normal: DVec3) -> f64 {
         let light = (self.toward + 0.55 * self.up - 0.45 * self.right).normalize();
-        0.38 + 0.62 * normal.dot(light).abs()
+        0.45 + 0.55 * normal.dot(light).abs()
     }
 }

@@ -27,7 +27,7 @@ impl Default for PreviewOptions {
 }
 
 /// The mesh coloured by strip with its visible points, as a PNG file: seen from the front, right and above, where y
-/// is up. Insides of open surfaces are greyed. Points that the correction moved are pink, all others white.
+/// is up unless the mesh clearly stands along z. Insides of open surfaces are greyed. Points that the correction moved are pink, all others white.
 ///
 /// Needs some 50 bytes a pixel while it works.
 pub(crate) fn preview_png(

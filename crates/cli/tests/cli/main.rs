@@ -2,7 +2,10 @@
 
 mod bad_input;
 mod common;
+mod compare;
+mod measure;
 mod outputs;
 mod repairs;
+mod shape;
 mod wrap;
 mod wrong_use;

@@ -125,7 +125,7 @@ fn when_one_output_fails_no_file_changes() {
         .failed(&["/dev/full", "cannot be written"]);
     assert_eq!(folder.text("p.xyz"), "as it was");
     assert_eq!(folder.names(), ["octahedron.obj", "p.xyz"]);
-    folder.run("wrap octahedron.obj -o /dev/null").ok();
+    folder.run("wrap octahedron.obj -o /dev/null --format ply").ok();
 }
 
 #[cfg(unix)]

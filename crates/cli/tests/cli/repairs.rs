@@ -1,6 +1,6 @@
 //! What checking repaired is told, on stderr and in the report.
 
-use crate::common::{Folder, OCTAHEDRON};
+use crate::common::{Folder, OCTAHEDRON, OCTAHEDRON_AREA};
 
 #[test]
 fn a_clean_mesh_has_no_notes() {
@@ -12,21 +12,23 @@ fn a_clean_mesh_has_no_notes() {
 #[test]
 fn each_repair_has_a_line() {
     let folder = Folder::new();
-    // A vertex twice, a vertex that nothing uses, a face twice, a face without area.
-    let broken = format!("{OCTAHEDRON}v 1 0 0\nv 9 9 9\nf 3 7 6\nf 1 1 2\n");
-    folder.write("broken.obj", broken);
-    let ran = folder.run("wrap broken.obj -n 10 -o p.xyz --report r.json").ok();
-    let notes: Vec<_> = ran.stderr.lines().filter(|line| line.starts_with("note: broken.obj: ")).collect();
+    // The octahedron with a vertex twice, a vertex that nothing uses, a face twice and a face without area.
+    let broken = "OFF 8 10 0\n1 0 0\n-1 0 0\n0 1 0\n0 -1 0\n0 0 1\n0 0 -1\n1 0 0\n9 9 9\n\
+        3 0 2 4\n3 2 1 4\n3 1 3 4\n3 3 0 4\n3 2 0 5\n3 1 2 5\n3 3 1 5\n3 0 3 5\n3 2 6 5\n3 0 0 1\n";
+    folder.write("broken.off", broken);
+    let ran = folder.run("wrap broken.off -n 10 -o p.xyz --report r.json").ok();
+    let notes: Vec<_> = ran.stderr.lines().filter(|line| line.starts_with("note: broken.off: ")).collect();
     assert!(notes.iter().any(|n| n.contains("1 vertex welded")), "{notes:?}");
     assert!(notes.iter().any(|n| n.contains("1 vertex left out")), "{notes:?}");
     assert!(notes.iter().any(|n| n.contains("another has the same corners")), "{notes:?}");
     let repaired = &folder.json("r.json")["mesh"]["repaired"];
     assert_eq!(repaired["welded_vertices"], 1);
+    assert_eq!(repaired["isolated_vertices"], 1);
     assert_eq!(repaired["duplicate_faces"], 1);
     assert_eq!(repaired["non_manifold_edges"], 0);
     let reported = repaired.as_object().expect("an object").values().filter(|v| **v != 0).count();
     assert_eq!(notes.len(), reported, "one line for each count that is not zero: {notes:?}");
-    assert!(!folder.run("wrap broken.obj -n 10 --quiet").ok().stderr.contains("note"));
+    assert!(!folder.run("wrap broken.off -n 10 --quiet").ok().stderr.contains("note"));
 }
 
 #[test]
@@ -59,7 +61,7 @@ fn info_counts() {
     assert_eq!(info["euler_characteristic"], 2);
     assert_eq!(info["bounds"], serde_json::json!([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]]));
     let area = info["area"].as_f64().expect("a number");
-    assert!((area - crate::common::OCTAHEDRON_AREA).abs() < 1e-12);
+    assert!((area - OCTAHEDRON_AREA).abs() < 1e-12);
     let text = folder.run("info octahedron.obj").ok();
     for word in ["octahedron.obj", "vertices", "6", "closed"] {
         assert!(text.text().contains(word), "{word}: {}", text.text());

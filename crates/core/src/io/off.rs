@@ -20,9 +20,13 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
     let word_end = line.find(|c: char| !c.is_ascii_alphabetic() && c != '4').unwrap_or(line.len());
     let (word, rest) = line.split_at(word_end);
     if word.to_ascii_uppercase().ends_with("OFF") {
-        let prefix = word[..word.len() - 3].to_ascii_uppercase();
-        if prefix.contains('4') || prefix.starts_with("N4") {
-            return Err(unsupported(place, "points of four dimensions", "write it with three coordinates"));
+        // Geomview writes `nOFF` for any number of dimensions, `NOFF` for normals.
+        if word.contains('4') || word == "nOFF" {
+            return Err(unsupported(
+                place,
+                "points of other than three dimensions",
+                "write it with three coordinates",
+            ));
         }
         let rest = rest.trim();
         if rest.eq_ignore_ascii_case("binary") {
@@ -135,6 +139,7 @@ mod tests {
         assert!(message("OFF\n1000000000000 1 0\n0 0 0\n").contains("cut off"));
         assert!(message("OFF\n1 1 0\n0 0 0\n99999999999 0 0\n").contains("line 4: a corner is missing"));
         assert!(message("OFF BINARY\n\0\0\0").contains("binary OFF cannot be read"));
-        assert!(message("4OFF\n1 1 1\n0 0 0 0\n").contains("four dimensions"));
+        assert!(message("nOFF\n4\n1 1 1\n0 0 0 0\n").contains("other than three"));
+        assert!(message("4OFF\n1 1 1\n0 0 0 0\n").contains("dimensions cannot be read"));
     }
 }

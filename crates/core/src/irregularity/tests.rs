@@ -8,7 +8,9 @@ use proptest::prelude::*;
 use super::{Irregularity, bound, irregularity};
 use crate::geometry::plane::{segment_distance, triangle_holds};
 use crate::ids::{FaceId, HalfedgeId};
-use crate::unfold::{BorderEdge, Strip, Strips, Twin};
+use crate::mesh::{CheckOptions, SurfaceMesh, shapes};
+use crate::segment::{SegmentOptions, segment};
+use crate::unfold::{BorderEdge, Strip, Strips, Twin, unfold};
 
 /// A strip of these triangles. `cuts` pairs the directed border edges that are the two copies of an edge; all
 /// others are mesh borders.
@@ -304,6 +306,24 @@ fn copies_that_differ_by_rounding_do_not_stall_the_subdivision() {
     let counted = counted(&strip, 0.1, 0.0);
     let found = irregularity(&alone(strip), 0.1, 0.0);
     assert!((found.exact - counted).abs() < 5e-3, "{}, counted {counted}", found.exact);
+}
+
+#[test]
+fn on_unfolded_shapes_the_three_agree_for_dense_points_and_keep_their_order() {
+    for soup in [shapes::uv_sphere(20, 20), shapes::cup(1), shapes::torus(24, 12, 0.3)] {
+        let (mesh, _) = SurfaceMesh::from_soup(&soup, &CheckOptions::default()).expect("a valid shape");
+        let strips = unfold(&mesh, &segment(&mesh, &SegmentOptions::default()));
+        for points in [50.0, 500.0, 5e3, 5e4, 5e7] {
+            let d_m = (mesh.area() / points).sqrt();
+            let found = irregularity(&strips, d_m, 0.1 * d_m);
+            assert!(found.exact <= found.bound.min(1.0) + 0.5e-4, "{points}: {found:?}");
+            assert!(found.refined <= found.bound, "{points}: {found:?}");
+        }
+        // Far below the length of an edge the zones of edges meet at corners only, where they share.
+        let d_m = (mesh.area() / 5e7).sqrt();
+        let found = irregularity(&strips, d_m, 0.1 * d_m);
+        assert!((found.exact / found.refined - 1.0).abs() < 0.02, "{found:?}");
+    }
 }
 
 /// A polygon around (2, 2) with its corners in all directions at these distances; (2, 2) is a planar vertex.

@@ -26,7 +26,7 @@ pub(super) fn triangulate(positions: &[DVec3], corners: &[VertexId], triangles: 
     }
     let before = triangles.len();
     if let Some(plane) = project(positions, corners) {
-        if let Some(cut) = convex_quad(corners, &plane) {
+        if let Some(cut) = convex_quad(corners, &plane.points) {
             triangles.extend(cut);
             return Cut::Delaunay;
         }
@@ -39,10 +39,21 @@ pub(super) fn triangulate(positions: &[DVec3], corners: &[VertexId], triangles: 
     Cut::Fan
 }
 
-/// The corners in the polygon's best-fit plane (Newell's normal), counterclockwise, scaled to a size near 1;
+/// A polygon laid into a plane.
+struct Plane {
+    /// The corners, counterclockwise, at a scale at which the polygon's size is near 1.
+    points: Vec<DVec2>,
+    /// How far the corners lie from the plane through the first one, at that scale.
+    depth: f64,
+}
+
+/// A polygon that is not deeper is flat.
+const FLAT: f64 = 1e-9;
+
+/// The corners in the polygon's best-fit plane (Newell's normal);
 /// `None` if the polygon has no area there. The scale is a power of two and the axes of a polygon in an axis plane
 /// are exact, so that collinear corners stay collinear.
-fn project(positions: &[DVec3], corners: &[VertexId]) -> Option<Vec<DVec2>> {
+fn project(positions: &[DVec3], corners: &[VertexId]) -> Option<Plane> {
     let origin = positions[corners[0].index()];
     let mut points: Vec<DVec3> = corners.iter().map(|v| positions[v.index()] - origin).collect();
     let size = points.iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
@@ -54,8 +65,12 @@ fn project(positions: &[DVec3], corners: &[VertexId]) -> Option<Vec<DVec2>> {
     let length = normal.length();
     // The sum's rounding error: below this its direction says nothing.
     (length > f64::EPSILON * points.len() as f64).then(|| {
-        let (u, v) = (normal / length).any_orthonormal_pair();
-        points.iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect()
+        let normal = normal / length;
+        let (u, v) = normal.any_orthonormal_pair();
+        Plane {
+            points: points.iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect(),
+            depth: points.iter().fold(0.0, |depth: f64, p| depth.max(p.dot(normal).abs())),
+        }
     })
 }
 
@@ -95,11 +110,11 @@ impl HasPosition for Corner {
 
 /// Appends the triangles of the constrained Delaunay triangulation that the boundary winds around exactly once;
 /// `None` if the boundary crosses itself.
-fn interior(corners: &[VertexId], plane: &[DVec2], triangles: &mut Vec<[usize; 3]>) -> Option<()> {
+fn interior(corners: &[VertexId], plane: &Plane, triangles: &mut Vec<[usize; 3]>) -> Option<()> {
     let mut cdt = ConstrainedDelaunayTriangulation::<Corner>::new();
     let first = first_places(corners);
     let mut handles = Vec::with_capacity(corners.len());
-    for (place, &point) in plane.iter().enumerate() {
+    for (place, &point) in plane.points.iter().enumerate() {
         let handle = if first[place] == place {
             let count = cdt.num_vertices();
             let handle = cdt.insert(Corner { point, place }).ok()?;
@@ -118,6 +133,9 @@ fn interior(corners: &[VertexId], plane: &[DVec2], triangles: &mut Vec<[usize; 3
         let added = cdt.try_add_constraint(from, handles[(i + 1) % handles.len()]);
         if added.is_empty() {
             return None; // crosses a constraint
+        }
+        if added.len() > 1 && plane.depth > FLAT {
+            return None; // runs over or under a corner
         }
         pieces.extend(added);
     }

@@ -175,6 +175,8 @@ fn a_large_polygon() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
     /// Random simple polygons (sorted by angle around the origin): the area is the shoelace formula's.
     #[test]
     fn area_is_the_shoelace_formula(
@@ -202,5 +204,34 @@ proptest! {
         prop_assert_eq!(how, Cut::Delaunay);
         let expected = shoelace(&points).abs();
         prop_assert!((area - expected).abs() <= 1e-12 * expected.max(0.1), "{area} {expected}");
+    }
+
+    /// Any closed path through any points, crossing, touching and repeating itself: the triangles have the path as
+    /// their boundary, so their area vectors sum up to the path's.
+    #[test]
+    fn area_vectors_sum_up_to_the_polygon(
+        points in prop::collection::vec((0i8..5, 0i8..5, 0i8..2), 8),
+        shake in prop::sample::select(vec![0.0, 1e-15, 0.1]),
+        offsets in prop::collection::vec(-1.0f64..1.0, 24),
+        path in prop::collection::vec(0u32..8, 4..14),
+    ) {
+        let positions: Vec<DVec3> = points
+            .iter()
+            .zip(offsets.chunks_exact(3))
+            .map(|(&(x, y, z), o)| dvec3(x.into(), y.into(), z.into()) + DVec3::from_slice(o) * shake)
+            .collect();
+        let mut path = path;
+        path.dedup();
+        while path.len() > 1 && path.first() == path.last() {
+            path.pop();
+        }
+        if path.len() < 4 {
+            return Ok(());
+        }
+        let (_, triangles, _) = cut_with(&positions, &path);
+        let at = |i: usize| positions[path[i % path.len()] as usize];
+        let sum: DVec3 = triangles.iter().map(|t| triangle::area_vector(at(t[0]), at(t[1]), at(t[2]))).sum();
+        let expected: DVec3 = (0..path.len()).map(|i| at(i).cross(at(i + 1))).sum();
+        prop_assert!(sum.distance(expected) < 1e-8, "{sum} {expected} {triangles:?} {path:?}");
     }
 }

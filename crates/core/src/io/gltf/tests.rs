@@ -90,6 +90,7 @@ fn strips_fans_lists_and_what_is_no_triangle() {
     );
     assert_eq!(with(r#"{"attributes": {"POSITION": 0}}"#).corners, [0, 1, 2]);
     assert_eq!(with(r#"{"attributes": {"POSITION": 0}, "mode": 1}"#), PolygonSoup::default());
+    assert_eq!(with(r#"{"attributes": {"NORMAL": 0}}"#), PolygonSoup::default());
     // Two primitives on the same positions.
     let two = with(&format!(r#"{LIST}, {{"attributes": {{"POSITION": 0}}, "indices": 2}}"#));
     assert_eq!((two.positions.len(), two.corners.len()), (4, 9));
@@ -176,6 +177,9 @@ fn bad_documents_are_named() {
     assert!(replaced(r#""indices": 1"#, r#""indices": 9"#).contains("out of bounds"));
     assert!(replaced(r#""indices": 1"#, r#""indices": 0"#).contains("indices must be unsigned integers"));
     assert!(replaced(r#""POSITION": 0"#, r#""POSITION": 1"#).contains("positions must be vectors"));
+    assert!(
+        replaced(r#""POSITION": 0"#, r#""POSITION": 7"#).contains("mesh 0: an attribute has no accessor")
+    );
     assert!(replaced("5123", "1").starts_with("glTF, file: "));
     assert!(
         replaced(r#""asset""#, r#""extensionsRequired": ["KHR_draco_mesh_compression"], "asset""#)

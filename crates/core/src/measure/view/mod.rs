@@ -68,6 +68,9 @@ mod purpose {
     pub(super) const OCCLUDERS: u64 = 0x76_69_65_03;
 }
 
+/// How many places of the surface occluders are put in front of.
+const ANCHORS: usize = 4096;
+
 /// A visible share of the area, with an estimate of its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct AreaShare {
@@ -111,13 +114,15 @@ impl Views {
         let half = options.nodes.div_ceil(2);
         let nodes = [(); 2].map(|()| order.points(half, random.unit(), random.unit())).concat();
         let nodes = places(mesh, &nodes);
+        // Places of their own, so that the same seed gives the same occluders whatever the number of nodes.
+        let anchors = places(mesh, &order.points(ANCHORS, 0.5, 0.0));
         let viewpoints = camera::viewpoints(mesh, options.views, options.seed);
         progress.begin("view", viewpoints.len() as u64);
         let views = parallel::map(viewpoints.len(), |i| {
             let viewpoint = viewpoints[i];
             let mut random = Random::new(options.seed, purpose::OCCLUDERS + i as u64);
             let occluders: Vec<Occluders> = (0..options.occlusions)
-                .filter_map(|_| Occluders::random(&viewpoint, &nodes, &mut random))
+                .filter_map(|_| Occluders::random(&viewpoint, &anchors, &mut random))
                 .collect();
             let unknown = AreaShare { share: f64::NAN, error: f64::NAN };
             let mut view = View { viewpoint, occluders, area: unknown, occluded_areas: Vec::new() };
