@@ -27,12 +27,14 @@ pub enum WasmToolchain {
 
 impl WasmToolchain {
     /// The toolchain in use when it has the wasm target or rustup can add it; else a system toolchain with the
-    /// source of its standard library (on Debian the packages rustc-web, cargo-web and rust-web-src).
+    /// source of its standard library (on Debian the packages rustc-web, cargo-web and rust-web-src), which
+    /// `LDWRAP_STD_FROM_SOURCE=1` asks for in any case.
     ///
     /// # Errors
     /// When there is neither; the message says what to install.
     pub fn find() -> Result<Self, Failure> {
-        if has_wasm_std(Path::new("rustc")) || add_by_rustup() {
+        let from_source = std::env::var_os("LDWRAP_STD_FROM_SOURCE").is_some();
+        if !from_source && (has_wasm_std(Path::new("rustc")) || add_by_rustup()) {
             return Ok(Self::Installed);
         }
         system_toolchain().ok_or_else(|| {

@@ -5,6 +5,34 @@ use glam::camera::rh::view::look_at_mat4;
 use glam::{Mat4, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
+/// Which axis of the mesh points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Up {
+    /// As in glTF and most scans.
+    #[default]
+    Y,
+    /// As in the built-in shapes and most programs for construction.
+    Z,
+}
+
+impl Up {
+    /// The axis.
+    pub fn axis(self) -> Vec3 {
+        match self {
+            Self::Y => Vec3::Y,
+            Self::Z => Vec3::Z,
+        }
+    }
+
+    /// The horizontal axis that looks at the viewer when not turned.
+    fn front(self) -> Vec3 {
+        match self {
+            Self::Y => Vec3::Z,
+            Self::Z => Vec3::NEG_Y,
+        }
+    }
+}
+
 /// A perspective camera that circles a target.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Orbit {
@@ -18,6 +46,8 @@ pub struct Orbit {
     pub pitch: f32,
     /// The radius of what is looked at: sets the near and far planes.
     pub radius: f32,
+    /// What points up.
+    pub up: Up,
 }
 
 /// The height of the field of view, in radians.
@@ -27,16 +57,16 @@ const STEEPEST: f32 = 1.55;
 
 impl Orbit {
     /// Looks at a ball so that it fills the view.
-    pub fn around(target: Vec3, radius: f32) -> Self {
+    pub fn around(target: Vec3, radius: f32, up: Up) -> Self {
         let radius = radius.max(f32::MIN_POSITIVE);
-        Self { target, distance: 1.08 * radius / (0.5 * FIELD).sin(), yaw: 0.6, pitch: 0.35, radius }
+        Self { target, distance: 1.08 * radius / (0.5 * FIELD).sin(), yaw: 0.6, pitch: 0.35, radius, up }
     }
 
     /// The direction from the target to the eye.
     pub fn backward(&self) -> Vec3 {
         let (sp, cp) = self.pitch.sin_cos();
         let (sy, cy) = self.yaw.sin_cos();
-        Vec3::new(cp * sy, sp, cp * cy)
+        cp * sy * Vec3::X + sp * self.up.axis() + cp * cy * self.up.front()
     }
 
     /// Where the eye is.
@@ -47,7 +77,7 @@ impl Orbit {
     /// The view's axes: right and up.
     pub fn axes(&self) -> (Vec3, Vec3) {
         let back = self.backward();
-        let right = Vec3::Y.cross(back).normalize_or(Vec3::X);
+        let right = self.up.axis().cross(back).normalize_or(Vec3::X);
         (right, back.cross(right))
     }
 
@@ -69,6 +99,11 @@ impl Orbit {
         (eye, (far - eye).normalize_or(-self.backward()))
     }
 
+    /// How much of the plane through the target the view shows from top to bottom, in units of the mesh.
+    pub fn height(&self) -> f32 {
+        2.0 * self.distance * (0.5 * FIELD).tan()
+    }
+
     /// Turns by a drag, in shares of the view's height.
     pub fn turn(&mut self, drag: Vec2) {
         self.yaw -= 4.0 * drag.x;
@@ -78,8 +113,7 @@ impl Orbit {
     /// Shifts what is looked at by a drag, in shares of the view's height.
     pub fn pan(&mut self, drag: Vec2) {
         let (right, up) = self.axes();
-        let height = 2.0 * self.distance * (0.5 * FIELD).tan();
-        self.target += height * (drag.y * up - drag.x * right);
+        self.target += self.height() * (drag.y * up - drag.x * right);
     }
 
     /// Comes nearer (factor above 1) or goes away.
@@ -134,7 +168,7 @@ mod tests {
 
     #[test]
     fn the_target_is_in_the_middle_and_the_ball_in_the_view() {
-        let orbit = Orbit::around(Vec3::new(1.0, 2.0, 3.0), 2.0);
+        let orbit = Orbit::around(Vec3::new(1.0, 2.0, 3.0), 2.0, Up::Z);
         for aspect in [0.5, 1.0, 2.0] {
             let matrix = orbit.matrix(aspect);
             let clip = matrix.project_point3(orbit.target);
@@ -149,7 +183,7 @@ mod tests {
 
     #[test]
     fn a_ray_goes_through_what_is_seen_there() {
-        let orbit = Orbit { yaw: 2.0, pitch: -0.7, ..Orbit::around(Vec3::ONE, 3.0) };
+        let orbit = Orbit { yaw: 2.0, pitch: -0.7, ..Orbit::around(Vec3::ONE, 3.0, Up::Y) };
         let point = Vec3::new(1.5, 0.2, 2.0);
         let clip = orbit.matrix(1.5).project_point3(point);
         let (eye, direction) = orbit.ray(1.5, clip.truncate());

@@ -46,7 +46,8 @@ impl Journal {
                 self.load = Some(job);
                 self.places = [None, None];
             }
-            (Answer::Wrapped(..), job @ Job::Wrap(slot, _)) | (Answer::Progress(..), job @ Job::Place(slot, _)) => {
+            (Answer::Wrapped(..), job @ Job::Wrap(slot, _))
+            | (Answer::Progress(..), job @ Job::Place(slot, _)) => {
                 self.places[slot.index()] = Some(job);
             }
             _ => {}

@@ -80,7 +80,7 @@ impl Looker {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::Orbit;
+    use crate::camera::{Orbit, Up};
     use crate::source::Source;
     use ldwrap::shapes::Shape;
 
@@ -89,7 +89,8 @@ mod tests {
         let (mesh, _) = Source::Shape(Shape::Sphere).load().unwrap();
         let looker = Looker::new(&mesh);
         let (low, high) = mesh.bounds();
-        let mut orbit = Orbit::around((0.5 * (low + high)).as_vec3(), (0.5 * low.distance(high)) as f32);
+        let mut orbit =
+            Orbit::around((0.5 * (low + high)).as_vec3(), (0.5 * low.distance(high)) as f32, Up::Y);
         orbit.zoom(0.02);
         let points = hilbert(&mesh, 500, 2);
         let mut looking = Looking { eye: orbit.eye(), matrix: orbit.matrix(1.0), occluder: None };

@@ -9,7 +9,7 @@ use glam::Vec2;
 use ldwrap::shapes::Shape;
 use serde_json::{Value, json};
 
-use crate::camera::{Orbit, PlaneView};
+use crate::camera::{Orbit, PlaneView, Up};
 use crate::engine::{Answer, Job, Slot};
 use crate::export::Export;
 use crate::figure::Figure;
@@ -132,7 +132,7 @@ impl Default for Model {
             mesh: None,
             runs: [None, None],
             verdicts: [Vec::new(), Vec::new()],
-            orbit: Orbit::around(glam::Vec3::ZERO, 1.0),
+            orbit: Orbit::around(glam::Vec3::ZERO, 1.0, Up::default()),
             plane: None,
             layout: Layout::default(),
             colouring: Colouring::default(),
@@ -315,7 +315,8 @@ impl Model {
         if let Some(source) = &self.source {
             self.looker_queue.push_back(Job::Load(source.clone()));
         }
-        self.orbit = Orbit::around(mesh.centre, mesh.radius);
+        let up = if matches!(self.source, Some(Source::Shape(_))) { Up::Z } else { Up::Y };
+        self.orbit = Orbit::around(mesh.centre, mesh.radius, up);
         self.plane = None;
         self.runs = [None, None];
         self.verdicts = [Vec::new(), Vec::new()];
@@ -385,7 +386,7 @@ impl Model {
     /// Shows everything again as at the start.
     pub fn reset_views(&mut self) {
         if let Some(mesh) = &self.mesh {
-            self.orbit = Orbit::around(mesh.centre, mesh.radius);
+            self.orbit = Orbit::around(mesh.centre, mesh.radius, self.orbit.up);
         }
         self.plane = None;
     }

@@ -19,7 +19,7 @@ pub struct MeshScene {
     pub corners: Vec<Vec3>,
     /// The middle of the box around it.
     pub centre: Vec3,
-    /// Half the diagonal of the box around it.
+    /// The radius of the ball around that middle that holds it.
     pub radius: f32,
     /// Counts and area.
     pub report: MeshReport,
@@ -114,8 +114,8 @@ impl MeshScene {
         Self {
             name: name.to_owned(),
             corners,
-            centre: (0.5 * (low + high)).as_vec3(),
-            radius: (0.5 * mesh.diagonal()) as f32,
+            centre,
+            radius,
             report: MeshReport::new(mesh),
             repaired: crate::report::repaired_in_words(repaired),
         }

@@ -1,6 +1,6 @@
 //! The controls: mesh, points, segmentation, method, what is drawn, files to take away.
 
-use eframe::egui::{self, ComboBox, DragValue, Slider};
+use eframe::egui::{self, ComboBox, DragValue, Slider, ThemePreference};
 use ldwrap::pipeline::Request;
 use ldwrap::segment::GrowthOrder;
 use ldwrap::sequence::Sequence;
@@ -8,6 +8,7 @@ use ldwrap::shapes::Shape;
 
 use super::files::{self, Inbox};
 use super::keys::KEYS;
+use crate::camera::Up;
 use crate::engine::Slot;
 use crate::export::Export;
 use crate::model::{Colouring, Model, Notice};
@@ -60,6 +61,21 @@ pub(super) fn take_away(ui: &mut egui::Ui, model: &mut Model) {
             model.notice = Some(Notice::Done("the link is in the clipboard".into()));
         }
     });
+}
+
+/// Dark, light, or as the system has it.
+pub(super) fn theme(ui: &mut egui::Ui) {
+    let mut theme = ui.ctx().options(|o| o.theme_preference);
+    let all = [ThemePreference::System, ThemePreference::Light, ThemePreference::Dark];
+    let names = ["as the system", "light", "dark"];
+    let shown = all.iter().position(|t| *t == theme).map_or("", |k| names[k]);
+    let chosen = ComboBox::from_id_salt("theme").selected_text(shown).width(100.0).show_ui(ui, |ui| {
+        for (value, name) in all.into_iter().zip(names) {
+            ui.selectable_value(&mut theme, value, name);
+        }
+    });
+    label(&chosen.response, "Colours of the page");
+    ui.ctx().set_theme(theme);
 }
 
 /// All other controls.
@@ -118,6 +134,11 @@ pub(super) fn show(ui: &mut egui::Ui, model: &mut Model) {
         if ui.button("Show all").clicked() {
             model.reset_views();
         }
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Up");
+        ui.radio_value(&mut model.orbit.up, Up::Y, "y");
+        ui.radio_value(&mut model.orbit.up, Up::Z, "z");
     });
     let mut rings = model.rings;
     if slider(ui, "Sample figure, rings", Slider::new(&mut rings, 0..=60)) {

@@ -3,11 +3,12 @@
 use eframe::egui::{self, Key};
 use glam::Vec2;
 
+use crate::camera::Up;
 use crate::model::{Colouring, Model};
 use crate::scene::Layout;
 
 /// What a key does, for the list that a person can open.
-pub(super) const KEYS: [(&str, &str); 11] = [
+pub(super) const KEYS: [(&str, &str); 12] = [
     ("Arrows", "turn the surface; with Shift, move it"),
     ("+ and -", "come nearer, go away"),
     ("Home", "show all"),
@@ -17,6 +18,7 @@ pub(super) const KEYS: [(&str, &str); 11] = [
     ("C", "colour by strip or by local surplus"),
     ("S", "strips side by side or in the domain"),
     ("A", "compare A and B"),
+    ("U", "turn another axis up"),
     ("O; I J K L", "obstacle on and off; move it"),
     ("Escape", "stop the work, or unpin"),
 ];
@@ -80,6 +82,12 @@ pub(super) fn handle(ctx: &egui::Context, model: &mut Model) {
             Layout::Domain => Layout::Apart,
         };
         model.plane = None;
+    }
+    if pressed(Key::U) {
+        model.orbit.up = match model.orbit.up {
+            Up::Y => Up::Z,
+            Up::Z => Up::Y,
+        };
     }
     if pressed(Key::O) {
         model.toggle_occluder();

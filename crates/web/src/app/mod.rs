@@ -162,23 +162,26 @@ impl App {
 
     fn top_bar(&mut self, ui: &mut egui::Ui, narrow: bool) {
         egui::Panel::top("top").show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
+            let row = |ui: &mut egui::Ui, app: &mut Self| {
                 ui.heading("ldwrap");
-                controls::mesh_chooser(ui, &mut self.model, &self.inbox);
-                controls::take_away(ui, &mut self.model);
-                egui::widgets::global_theme_preference_buttons(ui);
-                if !narrow {
+                controls::mesh_chooser(ui, &mut app.model, &app.inbox);
+                controls::take_away(ui, &mut app.model);
+                controls::theme(ui);
+                if app.model.is_busy() {
+                    if ui.button("Stop").clicked() {
+                        app.model.cancel();
+                    }
+                    let (stage, share) = app.model.stage.clone().unwrap_or_default();
+                    ui.label(share.map_or(stage.clone(), |s| format!("{stage} {:.0}%", 100.0 * s)));
+                } else if !narrow {
                     ui.label(RichText::new("Your mesh stays on this machine.").weak());
                 }
-                if self.model.is_busy() {
-                    ui.spinner();
-                    let (stage, share) = self.model.stage.clone().unwrap_or_default();
-                    ui.label(share.map_or(stage.clone(), |s| format!("{stage} {:.0}%", 100.0 * s)));
-                    if ui.button("Stop").clicked() {
-                        self.model.cancel();
-                    }
-                }
-            });
+            };
+            if narrow {
+                ui.horizontal_wrapped(|ui| row(ui, self));
+            } else {
+                ui.horizontal(|ui| row(ui, self));
+            }
             let notice = self.model.notice.clone();
             if let Some(notice) = notice {
                 ui.horizontal_wrapped(|ui| {
@@ -202,7 +205,7 @@ impl App {
             egui::ScrollArea::vertical()
                 .show(ui, |ui| readouts::show(ui, &mut self.model, self.frames.mean()));
         });
-        egui::CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| {
+        egui::CentralPanel::default().frame(egui::Frame::NONE.fill(ui.visuals().panel_fill)).show(ui, |ui| {
             let area = ui.available_rect_before_wrap();
             let (plane, surface) = area.split_left_right_at_fraction(0.45);
             self.plane_view(ui, plane.shrink(2.0), frame);
@@ -260,6 +263,11 @@ impl App {
         self.model.watch(width / rect.height());
         let _ = frame;
     }
+}
+
+/// Whether the pointer was moved since the last frame.
+fn pointer_moved(ui: &egui::Ui) -> bool {
+    ui.input(|i| i.events.iter().any(|e| matches!(e, egui::Event::PointerMoved(_))))
 }
 
 impl eframe::App for App {

@@ -40,7 +40,7 @@ pub(super) fn show(
     steer(ui, rect, model, &mut view, aspect, &response);
     let matrix = view.matrix(aspect);
     if let Some(at) = response.hover_pos().filter(|_| !response.dragged())
-        && (ui.input(|i| i.pointer.is_moving()) || response.clicked())
+        && (super::pointer_moved(ui) || response.clicked())
     {
         let clip = in_clip(rect, at);
         let seen = pick::Seen { matrix, aspect, clip };
@@ -69,7 +69,7 @@ pub(super) fn show(
         hover: model.hover.map(|p| p.face),
         wireframe: model.shown.wireframe,
         borders: model.shown.borders,
-        points: model.shown.points.then(|| point_size(model, rect) * scale),
+        points: model.shown.points.then(|| point_size(&run, 0.5 * rect.height() / view.half_height) * scale),
         ink: palette.ink,
         rim: palette.rim,
         // In the domain strips lie over each other on purpose: only side by side is an overlap one.
@@ -92,22 +92,15 @@ pub(super) fn show(
         }
     }
     let corner = rect.left_top() + egui::vec2(8.0, 6.0);
-    painter.text(
-        corner,
-        Align2::LEFT_TOP,
-        "Plane: drag to move, scroll to zoom",
-        FontId::proportional(13.0),
-        ink,
-    );
+    painter.text(corner, Align2::LEFT_TOP, "Plane", FontId::proportional(13.0), ink);
     if response.has_focus() {
         painter.rect_stroke(rect, 4.0, ui.visuals().selection.stroke, StrokeKind::Inside);
     }
 }
 
-/// How wide points are, in egui's units: smaller when there are many.
-pub(super) fn point_size(model: &Model, rect: Rect) -> f32 {
-    let count = model.runs[0].as_ref().map_or(1, |r| r.points.len().max(1)) as f32;
-    (0.28 * rect.height() / count.sqrt()).clamp(2.5, 9.0)
+/// How wide points are, in egui's units, where `unit` of them show one unit of the mesh: a part of their distance.
+pub(super) fn point_size(run: &RunScene, unit: f32) -> f32 {
+    (0.42 * run.d_m as f32 * unit).clamp(1.8, 9.0)
 }
 
 fn place(run: &RunScene, layout: Layout, pick: Pick) -> Option<Vec2> {

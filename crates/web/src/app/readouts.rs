@@ -75,6 +75,9 @@ fn trail(ui: &mut egui::Ui, model: &Model) {
         let line: Vec<_> =
             model.trail.iter().enumerate().filter_map(|(k, step)| Some(at(k, step[slot.index()]?))).collect();
         let colour = theme::slot_colour(ui, slot.index());
+        if let Some(last) = line.last() {
+            painter.circle_filled(*last, 3.0, colour);
+        }
         painter.line(line, Stroke::new(1.6, colour));
     }
     let text = format!("error, ±{}", percent(worst));

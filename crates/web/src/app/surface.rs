@@ -44,6 +44,8 @@ pub(super) fn show(
     let backward = model.orbit.backward();
     let (right, up) = model.orbit.axes();
     let scale = ui.ctx().pixels_per_point();
+    let size = model.runs[slot.index()].as_ref().filter(|_| model.shown.points);
+    let size = size.map(|run| super::plane::point_size(run, rect.height() / model.orbit.height()) * scale);
     let shot = Shot {
         matrix,
         eye: model.orbit.eye(),
@@ -52,7 +54,7 @@ pub(super) fn show(
         hover: model.hover.map(|p| p.face),
         wireframe: model.shown.wireframe,
         borders: model.shown.borders && model.runs[slot.index()].is_some(),
-        points: model.shown.points.then(|| super::plane::point_size(model, rect) * scale),
+        points: size,
         ink: palette.ink,
         rim: palette.rim,
         covers: None,
@@ -93,8 +95,7 @@ pub(super) fn show(
         );
     }
     let method = model.settings[slot.index()].method.name();
-    let title =
-        if model.comparing { format!("{}: {method}", slot.name()) } else { "Surface: drag to turn".into() };
+    let title = if model.comparing { format!("{}: {method}", slot.name()) } else { "Surface".into() };
     painter.text(
         rect.left_top() + egui::vec2(8.0, 6.0),
         Align2::LEFT_TOP,
@@ -155,7 +156,7 @@ fn point_at(
     response: &egui::Response,
     aspect: f32,
 ) {
-    let moved = ui.input(|i| i.pointer.is_moving()) || response.clicked();
+    let moved = super::pointer_moved(ui) || response.clicked();
     if slot != Slot::A || !moved || response.dragged() {
         return;
     }

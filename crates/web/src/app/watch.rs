@@ -84,7 +84,9 @@ pub(super) fn redraw_surface(pictures: &mut Pictures, model: &Model, slot: Slot,
         colours: Some(colour_key(model, slot, palette)),
     };
     update(&mut pictures.surfaces[k], &mut pictures.drawn[k], now, |part| match part {
-        Part::Triangles => Made::Triangles(model.mesh.as_ref().map(|m| m.corners.clone()).unwrap_or_default(), None),
+        Part::Triangles => {
+            Made::Triangles(model.mesh.as_ref().map(|m| m.corners.clone()).unwrap_or_default(), None)
+        }
         Part::Points => Made::Points(run.map(|r| draw::surface_points(r, palette)).unwrap_or_default()),
         Part::Faces => Made::Faces(faces(model, slot, palette)),
     });
@@ -100,9 +102,13 @@ pub(super) fn redraw_plane(pictures: &mut Pictures, model: &Model, palette: &Pal
         colours: Some(colour_key(model, Slot::A, palette)),
     };
     update(&mut pictures.plane, &mut pictures.drawn[2], now, |part| match (part, run) {
-        (Part::Triangles, Some(r)) => Made::Triangles(draw::plane_triangles(r, layout), Some(draw::band(r, layout))),
+        (Part::Triangles, Some(r)) => {
+            Made::Triangles(draw::plane_triangles(r, layout), Some(draw::band(r, layout)))
+        }
         (Part::Triangles, None) => Made::Triangles(Vec::new(), None),
-        (Part::Points, r) => Made::Points(r.map(|r| draw::plane_points(r, layout, palette)).unwrap_or_default()),
+        (Part::Points, r) => {
+            Made::Points(r.map(|r| draw::plane_points(r, layout, palette)).unwrap_or_default())
+        }
         (Part::Faces, Some(_)) => Made::Faces(faces(model, Slot::A, palette)),
         (Part::Faces, None) => Made::Faces(Vec::new()),
     });

@@ -57,7 +57,7 @@ void main() {
     colour = mix(colour, u_ink, 0.45 * wire);
     for (int side = 0; side < 3; side++) {
         uint kind = (v_sides >> uint(2 * side)) & 3u;
-        float border = kind == 2u ? 0.85 * line(distance[side], 1.1) : kind == 1u ? 0.35 * line(distance[side], 0.6) : 0.0;
+        float border = kind == 2u ? 0.8 * line(distance[side], 0.8) : kind == 1u ? 0.3 * line(distance[side], 0.5) : 0.0;
         colour = mix(colour, u_ink, u_borders * border);
     }
     if (((v_sides >> 6) & 1u) == 1u) {
