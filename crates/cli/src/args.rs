@@ -44,6 +44,18 @@ pub(crate) enum Command {
     Measure(MeasureArgs),
     /// Compare methods by all measures
     Compare(CompareArgs),
+    /// Print the completions of a shell
+    #[command(hide = true)]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, of the program or of a command
+    #[command(hide = true)]
+    Man {
+        /// The command
+        command: Option<String>,
+    },
 }
 
 /// Where the mesh comes from.
