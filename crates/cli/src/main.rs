@@ -14,7 +14,6 @@ mod quality;
 mod report;
 mod table;
 
-use std::num::NonZeroUsize;
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -46,9 +45,9 @@ fn run(line: &CommandLine) -> Outcome {
     }
 }
 
-fn limit_threads(threads: NonZeroUsize) -> anyhow::Result<()> {
+fn limit_threads(threads: u16) -> anyhow::Result<()> {
     rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.get())
+        .num_threads(usize::from(threads))
         .build_global()
         .with_context(|| format!("--threads {threads}"))
 }

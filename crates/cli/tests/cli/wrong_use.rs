@@ -35,6 +35,7 @@ fn numbers_are_checked() {
         "--smallest-share 1.5",
         "--seed=-1",
         "--threads 0",
+        "--threads 1000000",
         "--bases 1",
         "--sequence halton --bases 2",
         "--sequence halton --bases 2,4",
