@@ -13,6 +13,9 @@ mod relax;
 mod sites;
 mod tiles;
 
+#[cfg(test)]
+mod tests;
+
 use glam::DVec3;
 
 use crate::geometry::triangle;
