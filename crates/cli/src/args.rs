@@ -1,6 +1,5 @@
 //! The command line as it is typed. What the values mean together is checked in `job`.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -23,8 +22,8 @@ pub(crate) struct CommandLine {
     #[command(subcommand)]
     pub(crate) command: Command,
     /// Use this many threads [default: all cores]; the results are the same bits with any number
-    #[arg(long, global = true, value_name = "K")]
-    pub(crate) threads: Option<NonZeroUsize>,
+    #[arg(long, global = true, value_name = "K", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
     /// Print nothing on stderr but errors
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
@@ -44,6 +43,18 @@ pub(crate) enum Command {
     Measure(MeasureArgs),
     /// Compare methods by all measures
     Compare(CompareArgs),
+    /// Print the completions of a shell
+    #[command(hide = true)]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, of the program or of a command
+    #[command(hide = true)]
+    Man {
+        /// The command
+        command: Option<String>,
+    },
 }
 
 /// Where the mesh comes from.

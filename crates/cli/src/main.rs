@@ -14,7 +14,6 @@ mod quality;
 mod report;
 mod table;
 
-use std::num::NonZeroUsize;
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -41,12 +40,14 @@ fn run(line: &CommandLine) -> Outcome {
         Command::Shape(args) => commands::shape::run(args, line.quiet),
         Command::Measure(args) => commands::measure::run(args, line.quiet),
         Command::Compare(args) => commands::compare::run(args, line.quiet),
+        Command::Completions { shell } => commands::help::completions(*shell),
+        Command::Man { command } => commands::help::man(command.as_deref()),
     }
 }
 
-fn limit_threads(threads: NonZeroUsize) -> anyhow::Result<()> {
+fn limit_threads(threads: u16) -> anyhow::Result<()> {
     rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.get())
+        .num_threads(usize::from(threads))
         .build_global()
         .with_context(|| format!("--threads {threads}"))
 }

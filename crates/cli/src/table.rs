@@ -13,12 +13,12 @@ pub(crate) struct Measure {
     pub(crate) name: &'static str,
     /// What is in it.
     pub(crate) value: fn(&Quality) -> f64,
-    /// For the plot: the error itself, and over which value of random points the column states it.
+    /// For the plot: the error itself.
     pub(crate) error: Option<fn(&Quality) -> f64>,
 }
 
 /// All columns. Those with an error are stated over that of independent random points: 1 is random, less is better.
-pub(crate) const MEASURES: [Measure; 12] = [
+pub(crate) const MEASURES: [Measure; 11] = [
     Measure { name: "eta", value: |q| q.energy.eta, error: None },
     Measure { name: "energy", value: |q| q.energy.mc, error: Some(|q| q.energy.discrepancy.sqrt()) },
     Measure { name: "ball", value: |q| q.ball.mc, error: Some(|q| q.ball.l2) },
@@ -30,7 +30,6 @@ pub(crate) const MEASURES: [Measure; 12] = [
     Measure { name: "spacing_min", value: |q| q.spacing.min, error: None },
     Measure { name: "spacing_mean", value: |q| q.spacing.mean, error: None },
     Measure { name: "cover", value: |q| q.spacing.cover, error: None },
-    Measure { name: "components_worst", value: |q| q.components.worst, error: None },
 ];
 
 /// Mean and spread of a number over several seeds.

@@ -1,5 +1,6 @@
 //! `compare`: methods by measures.
 
+use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Context;
@@ -85,13 +86,19 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
     if let Some(destination) = &plot {
         outputs.stage(
             destination,
-            error_plot(&format!("Errors on {name}"), &panels(&rows, &trials)).into_bytes(),
+            error_plot(&format!("Root mean square errors on {}", file_name(&name)), &panels(&rows, &trials))
+                .into_bytes(),
         )?;
     }
     for file in outputs.commit()? {
         stages.say(&format!("wrote {}", file.display()));
     }
     Ok(())
+}
+
+/// The name without its folder.
+fn file_name(name: &str) -> String {
+    Path::new(name).file_name().map_or_else(|| name.to_owned(), |file| file.to_string_lossy().into_owned())
 }
 
 /// Those that were asked for; else all that work on the mesh.

@@ -1,6 +1,7 @@
 //! One file a command: from its arguments to its outputs.
 
 pub(crate) mod compare;
+pub(crate) mod help;
 pub(crate) mod info;
 pub(crate) mod measure;
 pub(crate) mod shape;

@@ -37,7 +37,7 @@ const LEFT: f64 = 56.0;
 const RIGHT: f64 = 14.0;
 const TOP: f64 = 30.0;
 const BOTTOM: f64 = 40.0;
-const COLUMNS: usize = 3;
+const COLUMNS: usize = 4;
 const LEGEND_ROW: f64 = 18.0;
 
 /// The plot as an SVG picture.
@@ -209,7 +209,8 @@ fn slopes(svg: &mut String, (n, error): (f64, f64), x: &Axis, y: &Axis) {
         let _ = writeln!(
             svg,
             "<path d=\"M{:.1} {:.1}L{ex:.1} {ey:.1}\" stroke=\"#999\" stroke-dasharray=\"5 4\"/>\
-             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" fill=\"#666\" font-size=\"10\">{label}</text>",
+             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" fill=\"#666\" font-size=\"10\" paint-order=\"stroke\" \
+             stroke=\"white\" stroke-width=\"3\">{label}</text>",
             x.at(n),
             y.at(error),
             ex - 4.0,

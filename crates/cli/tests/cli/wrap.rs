@@ -181,7 +181,6 @@ fn the_report_has_its_keys() {
 }
 
 #[test]
-#[ignore = "the pipeline does not equalize yet"]
 fn equalizing_is_on_and_reported() {
     let folder = Folder::with_octahedron();
     let report = folder.run("wrap octahedron.obj -n 100 --report - -q").ok().json();

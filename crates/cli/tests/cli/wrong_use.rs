@@ -35,6 +35,7 @@ fn numbers_are_checked() {
         "--smallest-share 1.5",
         "--seed=-1",
         "--threads 0",
+        "--threads 1000000",
         "--bases 1",
         "--sequence halton --bases 2",
         "--sequence halton --bases 2,4",
@@ -114,4 +115,21 @@ fn help_and_version_go_to_stdout() {
     for option in ["--density", "--sequence", "--flatness-angle", "--report", "--threads"] {
         assert!(folder.run("wrap --help").ok().text().contains(option), "{option}");
     }
+}
+
+#[test]
+fn completions_and_manual_pages_name_every_option() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = folder.run(&format!("completions {shell}")).ok();
+        assert!(script.text().contains("irregularity") && script.text().contains("compare"), "{shell}");
+    }
+    let page = folder.run("man").ok();
+    assert!(page.text().contains(".TH ldwrap-cli") && page.text().contains("measure"), "{}", page.text());
+    let page = folder.run("man wrap").ok();
+    for word in ["ldwrap-cli-wrap", "density", "flatness", "threads"] {
+        assert!(page.text().contains(word), "{word}");
+    }
+    folder.run("man nonsense").refused(&["nonsense"]);
+    folder.run("completions nonsense").refused(&["nonsense", "bash"]);
 }

@@ -13,6 +13,9 @@ mod relax;
 mod sites;
 mod tiles;
 
+#[cfg(test)]
+mod tests;
+
 use glam::DVec3;
 
 use crate::geometry::triangle;
@@ -35,13 +38,13 @@ pub struct EqualizeOptions {
     /// Rounds of relaxation. More come closer to equal cells; the time is proportional. Default: 20.
     pub rounds: u32,
     /// What a difference of normals counts for: the length of a unit of normal, in d_m. Keeps the two sides of sheets
-    /// thinner than about twice this apart; more costs evenness. Default: 0.3.
+    /// thinner than about twice this apart; more costs evenness. Default: 0.4.
     pub bend: f64,
 }
 
 impl Default for EqualizeOptions {
     fn default() -> Self {
-        Self { rounds: 20, bend: 0.3 }
+        Self { rounds: 20, bend: 0.4 }
     }
 }
 
@@ -71,6 +74,9 @@ pub struct Equalized {
 /// Tiles are cut so that no side is longer than this many d_m.
 const TILE: f64 = 0.7;
 
+/// A point nearer than this many d_m to the centroid of its balanced region starts from where it is.
+const KEEP: f64 = 0.4;
+
 /// Moves points along the surface until each stands for the same area; `strip_of_face` says which segment each face
 /// belongs to. Hears cancellation between rounds.
 ///
@@ -92,7 +98,7 @@ pub fn equalize(
     let bend = options.bend * d_m;
     let patches = Patches::new(mesh, strip_of_face, mass, n);
     let tiles = Tiles::cut(mesh, &patches.of_face, |_| 1.0, bend, TILE * d_m, TILE * d_m);
-    let start = start(mesh, &tiles, &patches, points, bend);
+    let start = start(mesh, &tiles, &patches, points, d_m, bend);
     let sites_at =
         |start: &Start| Site { position: mesh.locate(&points[start.point as usize]), ..start.site };
     let spread_before = spread(&nearest_cells(&tiles, start.iter().map(sites_at).collect(), d_m));
@@ -144,6 +150,7 @@ fn start(
     tiles: &Tiles,
     patches: &Patches,
     points: &[SurfacePoint],
+    d_m: f64,
     bend: f64,
 ) -> Vec<Start> {
     let count = patches.counts.len();
@@ -156,8 +163,9 @@ fn start(
     let mut order: Vec<(u32, u32)> =
         (0..).zip(points).map(|(i, p)| (patches.of_face[p.face.index()].unwrap_or(0), i)).collect();
     order.sort_unstable();
+    let place = |i: u32| mesh.locate(&points[i as usize]);
     let mut next = order.into_iter().map(|(_, i)| Item {
-        position: mesh.locate(&points[i as usize]),
+        position: place(i),
         normal: mesh.face_normal(points[i as usize].face) * bend,
         mass: 0.0,
         id: i,
@@ -171,9 +179,12 @@ fn start(
     for (patch, (tiles, points)) in (0..).zip(&mut jobs) {
         let mut regions = vec![Region { point: 0, position: DVec3::ZERO, normal: DVec3::ZERO }; points.len()];
         balance(tiles, points, &mut regions);
-        starts.extend(regions.into_iter().map(|r| Start {
-            point: r.point,
-            site: Site { position: r.position, normal: r.normal, weight: 0.0, patch },
+        starts.extend(regions.into_iter().map(|region| {
+            let own = place(region.point);
+            // A point that lies well in its region stays: that is what a good wrapping saves.
+            let stays = own.distance_squared(region.position) <= KEEP * KEEP * d_m * d_m;
+            let position = if stays { own } else { region.position };
+            Start { point: region.point, site: Site { position, normal: region.normal, weight: 0.0, patch } }
         }));
     }
     starts

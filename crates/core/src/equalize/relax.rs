@@ -24,8 +24,11 @@ const SKIN: f64 = 0.35;
 /// change by more than the mean.
 const DRIFT: f64 = 0.2;
 
-/// Rounds at the end in which only weights change.
-const SETTLING: u32 = 2;
+/// At most this many rounds at the end in which only weights change.
+const SETTLING: u32 = 8;
+
+/// Weights are settled when no cell's mass is off by more than this share.
+const CLOSE: f64 = 3e-4;
 
 /// The points after relaxation, with their cells.
 pub(super) struct Relaxed {
@@ -55,6 +58,9 @@ pub(super) fn relax(
             drift = 0.0;
         }
         let diagram = diagram(tiles, &candidates, &sites);
+        if round >= rounds && worst_error(&diagram, wanted) < CLOSE {
+            break;
+        }
         // The last rounds only fit the weights to where the points are.
         let step = match round + 1 {
             r if r < rounds => OVERSHOOT,
@@ -83,6 +89,10 @@ pub(super) fn relax(
     candidates = Candidates::find(tiles, &sites, d_m, 0.0);
     let diagram = diagram(tiles, &candidates, &sites);
     Relaxed { sites, diagram, candidates }
+}
+
+fn worst_error(diagram: &Diagram, wanted: &[f64]) -> f64 {
+    diagram.cells.iter().zip(wanted).fold(0.0_f64, |m, (c, w)| m.max((c.mass / w - 1.0).abs()))
 }
 
 fn to_centroid(site: &Site, cell: &Cell) -> DVec3 {

@@ -1,0 +1,94 @@
+//! An engine in a web worker, which runs the same wasm module as the page.
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use wasm_bindgen::JsCast as _;
+use wasm_bindgen::closure::Closure;
+use web_sys::{Event, MessageEvent, Worker, WorkerOptions, WorkerType};
+
+use crate::engine::{Answer, Job};
+use crate::journal::Journal;
+
+/// A worker that works.
+pub(crate) struct EngineLink {
+    worker: Worker,
+    answers: Rc<RefCell<VecDeque<Answer>>>,
+    wake: Rc<dyn Fn()>,
+    journal: Journal,
+}
+
+impl EngineLink {
+    /// Starts the worker; `wake` is called when it has something to say.
+    pub(crate) fn start(wake: impl Fn() + 'static) -> Result<Self, String> {
+        let wake: Rc<dyn Fn()> = Rc::new(wake);
+        let answers = Rc::default();
+        let worker = start_worker(&answers, &wake)?;
+        Ok(Self { worker, answers, wake, journal: Journal::default() })
+    }
+
+    /// Gives it work.
+    pub(crate) fn post(&mut self, job: &Job) {
+        self.journal.post(job.clone());
+        send(&self.worker, job);
+    }
+
+    /// What it has said since the last time.
+    pub(crate) fn take(&mut self) -> Vec<Answer> {
+        let said: Vec<Answer> = self.answers.borrow_mut().drain(..).collect();
+        said.into_iter().filter(|answer| self.journal.receive(answer)).collect()
+    }
+
+    /// Gives up the work in hand. A worker that works hears nothing, so it is ended, and a new one does again what
+    /// the old one had done.
+    pub(crate) fn cancel(&mut self) {
+        if !self.journal.is_working() {
+            return;
+        }
+        self.worker.terminate();
+        self.answers.borrow_mut().clear();
+        if let Ok(worker) = start_worker(&self.answers, &self.wake) {
+            self.worker = worker;
+        }
+        for job in self.journal.restart() {
+            send(&self.worker, &job);
+        }
+        self.answers.borrow_mut().push_front(Answer::Cancelled);
+        (self.wake)();
+    }
+}
+
+fn send(worker: &Worker, job: &Job) {
+    let bytes = postcard::to_stdvec(job).unwrap_or_default();
+    // A message of plain bytes can always be posted.
+    let _ = worker.post_message(&js_sys::Uint8Array::from(bytes.as_slice()));
+}
+
+fn start_worker(answers: &Rc<RefCell<VecDeque<Answer>>>, wake: &Rc<dyn Fn()>) -> Result<Worker, String> {
+    let options = WorkerOptions::new();
+    options.set_type(WorkerType::Module);
+    let worker =
+        Worker::new_with_options("./worker.js", &options).map_err(|e| format!("no worker: {e:?}"))?;
+    let (queue, called) = (Rc::clone(answers), Rc::clone(wake));
+    let on_message = Closure::<dyn FnMut(MessageEvent)>::new(move |event: MessageEvent| {
+        let bytes = js_sys::Uint8Array::new(&event.data()).to_vec();
+        let answer =
+            postcard::from_bytes(&bytes).unwrap_or_else(|e| Answer::Failed(format!("a garbled answer: {e}")));
+        queue.borrow_mut().push_back(answer);
+        called();
+    });
+    worker.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
+    on_message.forget();
+    let (queue, called) = (Rc::clone(answers), Rc::clone(wake));
+    let on_error = Closure::<dyn FnMut(Event)>::new(move |_| {
+        let reason = "the work failed: perhaps the mesh is too large for the browser's memory";
+        queue.borrow_mut().push_back(Answer::Failed(reason.into()));
+        called();
+    });
+    worker.set_onerror(Some(on_error.as_ref().unchecked_ref()));
+    on_error.forget();
+    // The module is sent as it is compiled, so that the worker neither loads nor compiles it again.
+    worker.post_message(&wasm_bindgen::module()).map_err(|e| format!("no worker: {e:?}"))?;
+    Ok(worker)
+}

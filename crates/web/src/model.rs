@@ -1,0 +1,592 @@
+//! The page's whole state and everything that can happen to it; knows no window, no browser and no clock.
+//!
+//! The model never works itself: it puts jobs into two queues, one for each engine, and takes in their answers.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use glam::Vec2;
+use ldwrap::shapes::Shape;
+use serde_json::{Value, json};
+
+use crate::camera::{Orbit, PlaneView, Up};
+use crate::engine::{Answer, Job, Slot};
+use crate::export::Export;
+use crate::figure::Figure;
+use crate::judge::{Measure, Verdict};
+use crate::look::{Look, Looking, Occluder};
+use crate::pick::Pick;
+use crate::scene::{Layout, MeshScene, RunScene};
+use crate::settings::{Link, Method, Settings};
+use crate::source::Source;
+
+/// Which engine a job is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Desk {
+    /// Loads, wraps, measures, makes files.
+    Maker,
+    /// Finds what the camera sees, many times a second.
+    Looker,
+}
+
+/// What colours the triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colouring {
+    /// Their strip.
+    #[default]
+    Strip,
+    /// Whether points stand too dense or too thin around them.
+    Local,
+}
+
+/// What is drawn besides the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// The points.
+    pub points: bool,
+    /// The sides of all triangles.
+    pub wireframe: bool,
+    /// Cuts and borders.
+    pub borders: bool,
+    /// The band along the open border where the distribution is broken.
+    pub band: bool,
+}
+
+/// What a person is told.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// Something went well.
+    Done(String),
+    /// Something failed; everything else is as it was.
+    Problem(String),
+}
+
+/// The share of points minus the share of surface that a view showed, for A and B.
+pub type TrailStep = [Option<f64>; 2];
+
+/// How many views the trail remembers.
+const TRAIL: usize = 160;
+
+/// The state of the page.
+#[derive(Debug)]
+pub struct Model {
+    /// The settings of both slots.
+    pub settings: [Settings; 2],
+    /// Whether B is shown beside A.
+    pub comparing: bool,
+    /// The mesh shown.
+    pub mesh: Option<Arc<MeshScene>>,
+    /// The runs shown.
+    pub runs: [Option<Arc<RunScene>>; 2],
+    /// What the measures said of them.
+    pub verdicts: [Vec<(Measure, Verdict)>; 2],
+    /// The camera of the surface view.
+    pub orbit: Orbit,
+    /// The view of the plane; `None` shows all.
+    pub plane: Option<PlaneView>,
+    /// How the strips are laid out.
+    pub layout: Layout,
+    /// What colours the triangles.
+    pub colouring: Colouring,
+    /// What is drawn.
+    pub shown: Shown,
+    /// What the pointer is on.
+    pub hover: Option<Pick>,
+    /// What was clicked.
+    pub pinned: Option<Pick>,
+    /// The sample figure around the pinned triangle.
+    pub figure: Option<Figure>,
+    /// How many rings it grows.
+    pub rings: u32,
+    /// The obstacle before the camera.
+    pub occluder: Option<Occluder>,
+    /// What the camera sees.
+    pub look: Option<Look>,
+    /// What it saw before.
+    pub trail: VecDeque<TrailStep>,
+    /// What the person is told.
+    pub notice: Option<Notice>,
+    /// Files made, to be saved.
+    pub files: Vec<(String, Vec<u8>)>,
+    /// Whether a picture of the views is to be saved.
+    pub picture_wanted: bool,
+    /// Where the work in hand stands.
+    pub stage: Option<(String, Option<f32>)>,
+    source: Option<Source>,
+    loading: Option<Source>,
+    queue: VecDeque<Job>,
+    in_hand: Option<Job>,
+    cancel: bool,
+    wrapped: [Option<Settings>; 2],
+    looker_queue: VecDeque<Job>,
+    looked: Option<Looking>,
+    looking: bool,
+}
+
+impl Default for Model {
+    fn default() -> Self {
+        let paper = Settings { method: Method::Paper, ..Settings::default() };
+        Self {
+            settings: [Settings::default(), paper],
+            comparing: false,
+            mesh: None,
+            runs: [None, None],
+            verdicts: [Vec::new(), Vec::new()],
+            orbit: Orbit::around(glam::Vec3::ZERO, 1.0, Up::default()),
+            plane: None,
+            layout: Layout::default(),
+            colouring: Colouring::default(),
+            shown: Shown { points: true, wireframe: false, borders: true, band: false },
+            hover: None,
+            pinned: None,
+            figure: None,
+            rings: 4,
+            occluder: None,
+            look: None,
+            trail: VecDeque::new(),
+            notice: None,
+            files: Vec::new(),
+            picture_wanted: false,
+            stage: None,
+            source: None,
+            loading: None,
+            queue: VecDeque::new(),
+            in_hand: None,
+            cancel: false,
+            wrapped: [None, None],
+            looker_queue: VecDeque::new(),
+            looked: None,
+            looking: false,
+        }
+    }
+}
+
+impl Model {
+    /// Starts with a link's shape and settings.
+    pub fn open(link: Option<Link>) -> Self {
+        let mut model = Self::default();
+        let Link { shape, settings } = link.unwrap_or_default();
+        model.settings[0] = settings;
+        model.load(Source::Shape(shape.parse().unwrap_or(Shape::Cup)));
+        model
+    }
+
+    /// What a link to this page should hold.
+    pub fn link(&self) -> Link {
+        let shape = match &self.source {
+            Some(Source::Shape(shape)) => shape.name().to_owned(),
+            _ => String::new(),
+        };
+        Link { shape, settings: self.settings[0].clone() }
+    }
+
+    /// The built-in shape that is shown, if it is one.
+    pub fn shape(&self) -> Option<Shape> {
+        match self.loading.as_ref().or(self.source.as_ref())? {
+            Source::Shape(shape) => Some(*shape),
+            Source::File { .. } => None,
+        }
+    }
+
+    /// Asks for another mesh; the one shown stays until the new one is checked.
+    pub fn load(&mut self, source: Source) {
+        self.queue.clear();
+        self.cancel = self.in_hand.is_some();
+        self.loading = Some(source.clone());
+        self.queue.push_back(Job::Load(source));
+    }
+
+    /// Asks for points wherever the settings changed. To be called when no control is being dragged.
+    pub fn settle(&mut self) {
+        if self.mesh.is_none() || self.loading.is_some() {
+            return;
+        }
+        for slot in self.slots() {
+            let wanted = &self.settings[slot.index()];
+            if self.wrapped[slot.index()].as_ref() != Some(wanted) {
+                self.wrapped[slot.index()] = Some(wanted.clone());
+                self.queue.retain(|job| !matches!(job, Job::Wrap(s, _) | Job::Judge(s, _) if *s == slot));
+                self.cancel |= matches!(&self.in_hand, Some(Job::Wrap(s, _)) if *s == slot);
+                self.queue.push_front(Job::Wrap(slot, wanted.clone()));
+            }
+        }
+    }
+
+    /// The slots shown.
+    pub fn slots(&self) -> impl Iterator<Item = Slot> + use<> {
+        let comparing = self.comparing;
+        Slot::ALL.into_iter().filter(move |s| comparing || *s == Slot::A)
+    }
+
+    /// Whether an engine works on something that the person waits for.
+    pub fn is_busy(&self) -> bool {
+        matches!(self.in_hand, Some(Job::Load(_) | Job::Wrap(..) | Job::Export(..))) || !self.queue.is_empty()
+    }
+
+    /// Gives up the work in hand and all that waits.
+    pub fn cancel(&mut self) {
+        self.queue.clear();
+        self.loading = None;
+        self.cancel = self.in_hand.is_some();
+    }
+
+    /// Whether the engine is to be told to stop; asked once.
+    pub fn take_cancel(&mut self) -> bool {
+        std::mem::take(&mut self.cancel)
+    }
+
+    /// The jobs to post now, each to its engine.
+    pub fn take_jobs(&mut self) -> Vec<(Desk, Job)> {
+        let mut jobs: Vec<_> = self.looker_queue.drain(..).map(|job| (Desk::Looker, job)).collect();
+        if self.in_hand.is_none()
+            && let Some(job) = self.queue.pop_front()
+        {
+            self.in_hand = Some(job.clone());
+            jobs.push((Desk::Maker, job));
+        }
+        jobs
+    }
+
+    /// Asks what the camera sees, unless it was asked already. `aspect` is the width of the surface view over its
+    /// height.
+    pub fn watch(&mut self, aspect: f32) {
+        let looking =
+            Looking { eye: self.orbit.eye(), matrix: self.orbit.matrix(aspect), occluder: self.occluder };
+        if self.mesh.is_some() && self.runs[0].is_some() && !self.looking && self.looked != Some(looking) {
+            self.looked = Some(looking);
+            self.looking = true;
+            self.looker_queue.push_back(Job::Look(looking));
+        }
+    }
+
+    /// Takes in what the looker answered.
+    pub fn receive_look(&mut self, answer: Answer) {
+        match answer {
+            Answer::Looked(look) => {
+                self.looking = false;
+                self.trail.push_back(look.points.map(|p| p.map(|p| p - look.surface)));
+                if self.trail.len() > TRAIL {
+                    self.trail.pop_front();
+                }
+                self.look = Some(look);
+            }
+            Answer::Failed(_) | Answer::Cancelled => self.looking = false,
+            _ => {}
+        }
+    }
+
+    /// Takes in what the maker answered.
+    pub fn receive(&mut self, answer: Answer) {
+        if let Answer::Progress(stage, share) = answer {
+            self.stage = Some((stage, share));
+            return;
+        }
+        self.stage = None;
+        let job = self.in_hand.take();
+        match answer {
+            Answer::Loaded(mesh) => self.accept_mesh(*mesh),
+            Answer::Wrapped(slot, run) => self.accept_run(slot, *run),
+            Answer::Judged(slot, measure, verdict) => self.verdicts[slot.index()].push((measure, verdict)),
+            Answer::Grown(_, figure) => self.figure = Some(figure),
+            Answer::Exported(name, bytes) => {
+                self.notice = Some(Notice::Done(format!("saved {name}")));
+                self.files.push((name, bytes));
+            }
+            Answer::Failed(reason) => {
+                if matches!(job, Some(Job::Load(_))) {
+                    self.loading = None;
+                }
+                self.notice = Some(Notice::Problem(reason));
+            }
+            Answer::Cancelled => {
+                if let Some(Job::Wrap(slot, _)) = job
+                    && self.loading.is_none()
+                    && !self.queue.iter().any(|j| matches!(j, Job::Wrap(s, _) if *s == slot))
+                {
+                    self.notice = Some(Notice::Done("stopped; the points are those from before".into()));
+                }
+            }
+            Answer::Progress(..) | Answer::Looked(_) => {}
+        }
+    }
+
+    fn accept_mesh(&mut self, mesh: MeshScene) {
+        self.source = self.loading.take();
+        if let Some(source) = &self.source {
+            self.looker_queue.push_back(Job::Load(source.clone()));
+        }
+        let up = if matches!(self.source, Some(Source::Shape(_))) { Up::Z } else { Up::Y };
+        self.orbit = Orbit::around(mesh.centre, mesh.radius, up);
+        self.plane = None;
+        self.runs = [None, None];
+        self.verdicts = [Vec::new(), Vec::new()];
+        self.wrapped = [None, None];
+        (self.hover, self.pinned, self.figure, self.look, self.looked) = (None, None, None, None, None);
+        self.trail.clear();
+        self.notice = (!mesh.repaired.is_empty())
+            .then(|| Notice::Done(format!("{} was repaired: {}", mesh.name, mesh.repaired.join(", "))));
+        self.mesh = Some(Arc::new(mesh));
+        self.settle();
+    }
+
+    fn accept_run(&mut self, slot: Slot, run: RunScene) {
+        let points = run.points.iter().map(|p| (p.face, p.barycentric)).collect();
+        self.looker_queue.push_back(Job::Place(slot, points));
+        self.looked = None;
+        self.trail.clear();
+        self.verdicts[slot.index()].clear();
+        for measure in Measure::ALL {
+            self.queue.push_back(Job::Judge(slot, measure));
+        }
+        if slot == Slot::A {
+            self.hover = None;
+            self.figure = None;
+            // The point that was pinned is gone; its triangle is still there.
+            self.pinned = self.pinned.map(|pick| Pick { point: None, ..pick });
+            self.grow();
+        }
+        self.runs[slot.index()] = Some(Arc::new(run));
+    }
+
+    /// Pins what the pointer is on, or unpins by a click on nothing.
+    pub fn pin(&mut self, pick: Option<Pick>) {
+        self.pinned = pick;
+        self.figure = None;
+        self.grow();
+    }
+
+    /// Grows the sample figure around the pinned triangle.
+    pub fn grow(&mut self) {
+        if let Some(pick) = self.pinned
+            && self.runs[0].is_some()
+        {
+            self.queue.retain(|job| !matches!(job, Job::Grow(..)));
+            self.queue.push_front(Job::Grow(Slot::A, pick.face, self.rings));
+        }
+    }
+
+    /// Pins the next (or the previous) point, so that all are reached by the keyboard.
+    pub fn pin_neighbour(&mut self, step: i64) {
+        let Some(run) = &self.runs[0] else { return };
+        let count = run.points.len() as i64;
+        if count == 0 {
+            return;
+        }
+        let current = self.pinned.and_then(|p| p.point).map_or(if step > 0 { -1 } else { 0 }, i64::from);
+        let point = (current + step).rem_euclid(count) as u32;
+        let face = run.points[point as usize].face;
+        self.pin(Some(Pick { face, point: Some(point) }));
+    }
+
+    /// Asks for a file.
+    pub fn export(&mut self, what: Export) {
+        self.queue.push_front(Job::Export(Slot::A, what));
+    }
+
+    /// Shows everything again as at the start.
+    pub fn reset_views(&mut self) {
+        if let Some(mesh) = &self.mesh {
+            self.orbit = Orbit::around(mesh.centre, mesh.radius, self.orbit.up);
+        }
+        self.plane = None;
+    }
+
+    /// Puts an obstacle before the camera, or takes it away.
+    pub fn toggle_occluder(&mut self) {
+        self.occluder = match self.occluder {
+            Some(_) => None,
+            None => Some(Occluder { low: Vec2::new(-0.25, -0.45), high: Vec2::new(0.35, 0.45) }),
+        };
+    }
+
+    /// The numbers of what the pointer is on, or of what is pinned, line by line.
+    pub fn describe(&self, pick: Pick) -> Vec<String> {
+        let (Some(mesh), Some(run)) = (&self.mesh, &self.runs[0]) else { return Vec::new() };
+        let Some(&strip) = run.strip_of.get(pick.face as usize) else { return Vec::new() };
+        let mut lines = Vec::new();
+        if let Some(point) = pick.point.and_then(|p| run.points.get(p as usize)) {
+            let p = point.position;
+            let origin = match point.origin {
+                ldwrap::Origin::Wrapped => "wrapped",
+                ldwrap::Origin::Projected => "projected by the correction",
+                ldwrap::Origin::Equalized => "equalized",
+            };
+            lines.push(format!("point {}: {origin}", pick.point.unwrap_or_default()));
+            lines.push(format!("at {:.4}, {:.4}, {:.4}", p.x, p.y, p.z));
+        }
+        let [a, b, c] = mesh.triangle(pick.face);
+        lines.push(format!("triangle {}: area {:.3e}", pick.face, 0.5 * (b - a).cross(c - a).length()));
+        let of = &run.strips[strip as usize];
+        lines.push(format!("strip {strip}: {} triangles, area {:.4}", of.faces, of.area));
+        lines.push(format!("its border: {:.3}, of it open {:.3}", of.border_length, of.open_border_length));
+        lines
+    }
+
+    /// One line about what is shown, for people who hear the page and for tests.
+    pub fn status(&self) -> String {
+        let (Some(mesh), run) = (&self.mesh, &self.runs[0]) else { return "loading".into() };
+        match run {
+            _ if self.is_busy() => format!("working on {}", mesh.name),
+            None => format!("{}: {} triangles", mesh.name, mesh.report.faces),
+            Some(run) => format!(
+                "{}: {} triangles, {} strips, {} points, irregularity {:.2}",
+                mesh.name,
+                mesh.report.faces,
+                run.strips.len(),
+                run.points.len(),
+                run.irregularity[0],
+            ),
+        }
+    }
+
+    /// The state as JSON, for tests of the page.
+    pub fn inspect(&self) -> Value {
+        let run = self.runs[0].as_deref();
+        json!({
+            "busy": self.is_busy(),
+            "mesh": self.mesh.as_ref().map(|m| &m.name),
+            "triangles": self.mesh.as_ref().map(|m| m.report.faces),
+            "strips": run.map(|r| r.strips.len()),
+            "points": run.map(|r| r.points.len()),
+            "pointsOfB": self.runs[1].as_ref().map(|r| r.points.len()),
+            "hover": self.hover.map(|p| json!({"face": p.face, "point": p.point})),
+            "pinned": self.pinned.map(|p| json!({"face": p.face, "point": p.point})),
+            "figure": self.figure.as_ref().map(|f| json!({"faces": f.faces.len(), "degree": f.degree})),
+            "look": self.look.map(|l| json!({"surface": l.surface, "points": l.points})),
+            "trail": self.trail.len(),
+            "verdicts": self.verdicts[0].len(),
+            "notice": self.notice.as_ref().map(|n| match n {
+                Notice::Done(text) => json!({"done": text}),
+                Notice::Problem(text) => json!({"problem": text}),
+            }),
+            "seconds": run.map(|r| r.seconds),
+            "status": self.status(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Engine;
+    use ldwrap::Silent;
+
+    /// Both engines, working at once in the test's own thread.
+    struct Office {
+        maker: Engine,
+        looker: Engine,
+    }
+
+    impl Office {
+        fn new() -> Self {
+            Self { maker: Engine::default(), looker: Engine::default() }
+        }
+
+        fn work(&mut self, model: &mut Model) {
+            loop {
+                let jobs = model.take_jobs();
+                if jobs.is_empty() {
+                    return;
+                }
+                for (desk, job) in jobs {
+                    match desk {
+                        Desk::Maker => model.receive(self.maker.handle(job, &Silent, &|| 0.0)),
+                        Desk::Looker => model.receive_look(self.looker.handle(job, &Silent, &|| 0.0)),
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn it_opens_with_a_mesh_wrapped() {
+        let mut model = Model::open(None);
+        Office::new().work(&mut model);
+        assert_eq!(model.runs[0].as_ref().unwrap().points.len(), 1000);
+        assert!(!model.is_busy());
+        assert!(model.status().contains("1000 points"), "{}", model.status());
+    }
+
+    #[test]
+    fn settings_wrap_again_only_when_they_change() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        office.work(&mut model);
+        model.settle();
+        assert!(!model.is_busy());
+        model.settings[0].request = ldwrap::pipeline::Request::Count(64);
+        model.settle();
+        assert!(model.is_busy());
+        office.work(&mut model);
+        assert_eq!(model.runs[0].as_ref().unwrap().points.len(), 64);
+    }
+
+    #[test]
+    fn a_broken_file_is_told_and_the_old_mesh_stays() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        office.work(&mut model);
+        model.load(Source::File { name: "broken.ply".into(), bytes: b"no mesh".to_vec() });
+        office.work(&mut model);
+        assert!(matches!(&model.notice, Some(Notice::Problem(text)) if text.contains("broken.ply")));
+        assert_eq!(model.mesh.as_ref().unwrap().name, "cup");
+        assert_eq!(model.link().shape, "cup");
+        model.settings[0].seed = 5;
+        model.settle();
+        office.work(&mut model);
+        assert_eq!(model.runs[0].as_ref().unwrap().points.len(), 1000);
+    }
+
+    #[test]
+    fn comparing_fills_the_second_slot() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        office.work(&mut model);
+        assert!(model.runs[1].is_none());
+        model.comparing = true;
+        model.settle();
+        office.work(&mut model);
+        assert!(model.runs[1].is_some());
+    }
+
+    #[test]
+    fn pinning_a_point_grows_its_figure() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        office.work(&mut model);
+        model.pin_neighbour(1);
+        office.work(&mut model);
+        let figure = model.figure.as_ref().unwrap();
+        assert_eq!(figure.seed, model.runs[0].as_ref().unwrap().points[0].face);
+        assert!(figure.degree >= 1);
+        assert!(!model.describe(model.pinned.unwrap()).is_empty());
+        model.pin(None);
+        assert!(model.figure.is_none());
+    }
+
+    #[test]
+    fn cancelling_keeps_the_old_points() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        office.work(&mut model);
+        model.settings[0].seed = 9;
+        model.settle();
+        let job = model.take_jobs();
+        assert!(matches!(job.as_slice(), [(Desk::Maker, Job::Wrap(..))]));
+        model.cancel();
+        assert!(model.take_cancel());
+        model.receive(Answer::Cancelled);
+        assert!(!model.is_busy());
+        assert!(model.runs[0].is_some());
+    }
+
+    #[test]
+    fn the_trail_follows_the_camera() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        office.work(&mut model);
+        for step in 0..3 {
+            model.orbit.yaw = step as f32;
+            model.watch(1.0);
+            model.watch(1.0);
+            office.work(&mut model);
+        }
+        assert_eq!(model.trail.len(), 3);
+        let look = model.look.unwrap();
+        assert!(look.points[1].is_none());
+    }
+}

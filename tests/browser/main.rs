@@ -1,0 +1,268 @@
+//! The page in a real browser. `cargo xtask test` builds the page and says where it is; without a browser or a wasm
+//! compiler these tests skip loudly, and fail in continuous integration.
+
+mod chrome;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::Mutex;
+
+use chrome::{Chrome, DESKTOP, Screen};
+use ldwrap::pipeline::{self, Options, Request};
+use ldwrap::shapes::Shape;
+use ldwrap::{CheckOptions, Silent, SurfaceMesh};
+use serde_json::{Value, json};
+use xtask::serve::Server;
+
+/// One browser at a time: two share the processor and are slower together.
+static ONE: Mutex<()> = Mutex::new(());
+
+struct Built {
+    page: PathBuf,
+    package: PathBuf,
+    browser: PathBuf,
+}
+
+/// The built page and the browser; `None`, said loudly, where they are missing.
+fn built() -> Option<Built> {
+    let folder = |name| std::env::var_os(name).map(PathBuf::from);
+    match (folder("LDWRAP_PAGE"), folder("LDWRAP_PACKAGE"), folder("LDWRAP_BROWSER")) {
+        (Some(page), Some(package), Some(browser)) => Some(Built { page, package, browser }),
+        _ => {
+            assert!(!xtask::in_ci(), "the page must be tested: run `cargo xtask test`");
+            eprintln!(
+                "SKIPPED: the page is not tested without a browser and a wasm compiler: see `cargo xtask test`"
+            );
+            None
+        }
+    }
+}
+
+/// Runs a test on the opened page.
+fn on_page(screen: Screen, fragment: &str, test: impl FnOnce(&mut Chrome)) {
+    let Some(Built { page, browser, .. }) = built() else { return };
+    let _one = ONE.lock().unwrap_or_else(|broken| broken.into_inner());
+    let server = Server::start(&page, 0).expect("a server");
+    let mut chrome = Chrome::start(&browser, screen);
+    chrome.open(&format!("{}{fragment}", server.address()));
+    chrome.wait_for("window.ldwrap");
+    test(&mut chrome);
+    let problems = chrome.problems();
+    assert!(problems.is_empty(), "the page reported errors: {problems:#?}");
+}
+
+/// Waits until the shown mesh is wrapped.
+fn wait_for_points(chrome: &mut Chrome, count: usize) -> Value {
+    chrome.wait_for_state(&format!("!s.busy && s.points === {count}"))
+}
+
+/// Keeps a picture of the page for people to look at.
+fn keep_picture(chrome: &mut Chrome, name: &str) {
+    let bytes = chrome.screenshot();
+    assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000, "a picture of nothing");
+    let folder = xtask::target().join("screenshots");
+    fs::create_dir_all(&folder).expect("a folder for pictures");
+    fs::write(folder.join(name), bytes).expect("a picture");
+}
+
+/// Native points: the face and the exact weights, in order.
+fn native(mesh: &SurfaceMesh, count: usize) -> (Vec<u32>, Vec<u64>, Vec<u32>) {
+    let options = Options { request: Request::Count(count), ..Options::default() };
+    let run = pipeline::run(mesh, &options, &Silent).expect("a run");
+    let faces = run.samples.iter().map(|s| s.point.face.0).collect();
+    let weights = run.samples.iter().flat_map(|s| s.point.barycentric).map(f64::to_bits).collect();
+    let positions = run
+        .samples
+        .iter()
+        .flat_map(|s| mesh.locate(&s.point).as_vec3().to_array())
+        .map(f32::to_bits)
+        .collect();
+    (faces, weights, positions)
+}
+
+fn checked(soup: &ldwrap::PolygonSoup) -> SurfaceMesh {
+    SurfaceMesh::from_soup(soup, &CheckOptions::default()).expect("a mesh").0
+}
+
+/// The words of a JavaScript array of typed arrays, as whole numbers.
+fn bits<T: TryFrom<u64>>(value: &Value) -> Vec<T> {
+    let numbers = value.as_array().expect("an array");
+    numbers
+        .iter()
+        .map(|n| T::try_from(n.as_str().expect("text").parse().expect("a number")).ok().expect("in range"))
+        .collect()
+}
+
+#[test]
+fn it_opens_wrapped_and_shows_itself_in_light_dark_and_on_a_phone() {
+    let screens = [
+        ("page-light.png", DESKTOP),
+        ("page-dark.png", Screen { dark: true, ..DESKTOP }),
+        ("page-phone.png", Screen { width: 400, height: 860, dark: false, phone: true }),
+    ];
+    for (name, screen) in screens {
+        on_page(screen, "", |chrome| {
+            let state = wait_for_points(chrome, 1000);
+            assert_eq!((&state["mesh"], &state["triangles"]), (&json!("cup"), &json!(13952)));
+            // Measures and looks come later, off the page's own frame.
+            chrome.wait_for_state("s.verdicts === 7 && s.look");
+            let status = chrome.evaluate("document.getElementById('status').textContent");
+            assert!(status.as_str().is_some_and(|s| s.contains("1000 points")), "{status}");
+            keep_picture(chrome, name);
+        });
+    }
+}
+
+#[test]
+fn a_dropped_file_is_shown_and_a_broken_one_leaves_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let good = folder.path().join("pyramid.obj");
+    fs::write(
+        &good,
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .5 .5 1\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n",
+    )
+    .expect("a file");
+    let broken = folder.path().join("broken.ply");
+    fs::write(&broken, "ply\nformat ascii 1.0\nelement vertex 3\n").expect("a file");
+    on_page(DESKTOP, "", |chrome| {
+        wait_for_points(chrome, 1000);
+        chrome.drop_file(&good);
+        let state = chrome.wait_for_state("!s.busy && s.mesh === 'pyramid.obj' && s.points === 1000");
+        assert_eq!(state["triangles"], 6);
+        chrome.drop_file(&broken);
+        let state = chrome.wait_for_state("!s.busy && s.notice?.problem");
+        assert!(state["notice"]["problem"].as_str().is_some_and(|t| t.contains("broken.ply")), "{state}");
+        assert_eq!((&state["mesh"], &state["points"]), (&json!("pyramid.obj"), &json!(1000)));
+    });
+}
+
+#[test]
+fn pointing_links_the_views_and_a_click_pins_a_figure() {
+    on_page(DESKTOP, "", |chrome| {
+        wait_for_points(chrome, 1000);
+        let surface = chrome.place_of("Surface");
+        chrome.move_to((surface.0 - 3.0, surface.1 - 3.0));
+        chrome.move_to(surface);
+        let on_surface = chrome.wait_for_state("s.hover")["hover"]["face"].clone();
+        assert!(on_surface.is_u64());
+        let plane = chrome.place_of("Planar domain");
+        // Somewhere near the middle of the plane lies a strip.
+        let hit = (0..40).any(|k| {
+            chrome.move_to((plane.0 - 100.0 + 5.0 * f64::from(k), plane.1 + 3.0 * f64::from(k)));
+            let hover = chrome.state()["hover"]["face"].clone();
+            hover.is_u64() && hover != on_surface
+        });
+        assert!(hit, "no strip under the pointer in the plane");
+        let at = chrome.place_of("Surface");
+        chrome.move_to(at);
+        chrome.press(at, true);
+        chrome.press(at, false);
+        let state = chrome.wait_for_state("s.pinned && s.figure");
+        assert!(state["figure"]["degree"].as_u64().is_some_and(|d| d >= 1), "{state}");
+        // And by the keyboard alone.
+        chrome.key("Escape", "Escape");
+        chrome.wait_for_state("!s.pinned");
+        chrome.key("n", "KeyN");
+        let state = chrome.wait_for_state("s.pinned && s.figure");
+        assert_eq!(state["pinned"]["point"], 0);
+        keep_picture(chrome, "page-figure.png");
+    });
+}
+
+#[test]
+fn orbiting_is_followed_by_the_visible_share() {
+    on_page(DESKTOP, "", |chrome| {
+        wait_for_points(chrome, 1000);
+        let before = chrome.wait_for_state("s.look")["trail"].as_u64().expect("a trail");
+        let (x, y) = chrome.place_of("Surface");
+        chrome.move_to((x, y));
+        chrome.press((x, y), true);
+        for step in 1..12 {
+            chrome.drag_to((x + 12.0 * f64::from(step), y));
+        }
+        chrome.press((x + 132.0, y), false);
+        let state = chrome.wait_for_state(&format!("s.trail > {before}"));
+        let (surface, points) = (&state["look"]["surface"], &state["look"]["points"][0]);
+        let error = surface.as_f64().expect("a share") - points.as_f64().expect("a share");
+        assert!(error.abs() < 0.06, "{state}");
+    });
+}
+
+#[test]
+fn what_is_downloaded_is_what_the_native_program_writes() {
+    on_page(DESKTOP, "", |chrome| {
+        wait_for_points(chrome, 1000);
+        chrome.click("Take away");
+        chrome.click("Points, CSV");
+        let bytes = chrome.downloaded("cup-points.csv");
+        let mesh = checked(&Shape::Cup.generate());
+        let run = pipeline::run(&mesh, &Options::default(), &Silent).expect("a run");
+        let rows: Vec<_> = run.samples.iter().map(|s| ldwrap::io::points::PointRow::new(&mesh, s)).collect();
+        let mut native = Vec::new();
+        ldwrap::io::points::write_points(ldwrap::io::points::PointFormat::Csv, &rows, &mut native)
+            .expect("written");
+        assert_eq!(String::from_utf8_lossy(&bytes), String::from_utf8_lossy(&native));
+    });
+}
+
+#[test]
+fn the_javascript_api_gives_the_bits_of_the_native_library() {
+    on_page(DESKTOP, "", |chrome| {
+        chrome.evaluate(
+            "import('./ldwrap_web.js').then(m => { window.api = m; window.text = (T, a) => Array.from(new T(a.buffer), String) })",
+        );
+        for shape in [Shape::Sphere, Shape::Cup, Shape::Trefoil] {
+            let call = format!(
+                "(w => [text(Uint32Array, w.faces), text(BigUint64Array, w.barycentric), text(Uint32Array, w.positions)])\
+                 (api.wrapShape('{}', {{request: {{count: 700}}}}))",
+                shape.name()
+            );
+            let got = chrome.evaluate(&call);
+            let (faces, weights, positions) = native(&checked(&shape.generate()), 700);
+            assert_eq!(bits::<u32>(&got[0]), faces, "{}: faces", shape.name());
+            assert_eq!(bits::<u64>(&got[1]), weights, "{}: weights", shape.name());
+            assert_eq!(bits::<u32>(&got[2]), positions, "{}: positions", shape.name());
+        }
+        let told = chrome.evaluate(
+            "(() => { try { api.wrapShape('cup', {seeds: 1}) } catch (e) { return e.message } })()",
+        );
+        assert!(told.as_str().is_some_and(|t| t.contains("seeds")), "{told}");
+    });
+}
+
+#[test]
+fn the_package_works_in_node_and_packs() {
+    let Some(Built { package, .. }) = built() else { return };
+    let has =
+        |program: &str| Command::new(program).arg("--version").output().is_ok_and(|o| o.status.success());
+    if !has("node") || !has("npm") {
+        assert!(!xtask::in_ci(), "node and npm are needed in continuous integration");
+        eprintln!("SKIPPED: the JavaScript package is not tested without node and npm");
+        return;
+    }
+    let output = Command::new("node").arg("example.mjs").current_dir(&package).output().expect("node runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let mesh = checked(&Shape::Cup.generate());
+    let (_, _, positions) = native(&mesh, 1000);
+    let printed: Vec<u32> = String::from_utf8_lossy(&output.stdout)
+        .split_whitespace()
+        .map(|number| (number.parse::<f64>().expect("a number") as f32).to_bits())
+        .collect();
+    assert_eq!(printed, positions);
+    pack(&package);
+}
+
+fn pack(package: &Path) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = Command::new("npm")
+        .args(["pack", "--pack-destination"])
+        .arg(folder.path())
+        .current_dir(package)
+        .output()
+        .expect("npm runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let packed: Vec<_> =
+        fs::read_dir(folder.path()).expect("the folder").flatten().map(|e| e.file_name()).collect();
+    assert!(packed.iter().any(|name| name.to_string_lossy().ends_with(".tgz")), "{packed:?}");
+}

@@ -1,0 +1,97 @@
+//! Everything that must hold before a change lands: formatting, lints, the page, tests, documentation, packages.
+
+use std::time::Instant;
+
+use crate::command::{cargo, run};
+use crate::{Failure, browser, in_ci, web};
+
+/// The packages that are made to be published.
+const PUBLISHED: [&str; 3] = ["ldwrap", "ldwrap-cli", "ldwrap-web"];
+
+/// Runs all checks, each shown; stops at the first that fails. Without a wasm compiler or a browser the tests of the
+/// page are skipped, loudly; with `CI=true` that is an error.
+///
+/// # Errors
+/// The first check that failed.
+pub fn run_all() -> Result<(), Failure> {
+    step("formatting", || run(cargo().args(["fmt", "--all", "--check"])))?;
+    step("lints", || {
+        run(cargo().args(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+        run(cargo().args([
+            "clippy",
+            "-p",
+            "ldwrap",
+            "--no-default-features",
+            "--all-targets",
+            "--",
+            "-D",
+            "warnings",
+        ]))?;
+        run(cargo().args([
+            "clippy",
+            "-p",
+            "ldwrap-web",
+            "--no-default-features",
+            "--lib",
+            "--",
+            "-D",
+            "warnings",
+        ]))
+    })?;
+    let page = step("page", page)?;
+    step("tests", || {
+        let mut test = cargo();
+        test.args(["test", "--workspace"]);
+        if let Some(page) = &page {
+            test.env("LDWRAP_PAGE", &page.folder)
+                .env("LDWRAP_PACKAGE", &page.package)
+                .env("LDWRAP_BROWSER", &page.browser);
+        }
+        run(&mut test)
+    })?;
+    step("documentation", || {
+        run(cargo()
+            .args(["doc", "--workspace", "--no-deps", "--all-features"])
+            .env("RUSTDOCFLAGS", "-D warnings"))
+    })?;
+    step("packages", || {
+        let packages = PUBLISHED.iter().flat_map(|name| ["-p", name]);
+        run(cargo().args(["package", "--allow-dirty"]).args(packages))
+    })?;
+    if page.is_none() {
+        eprintln!("\nSKIPPED: THE PAGE WAS NEITHER BUILT NOR TESTED; the reason is above.");
+    }
+    eprintln!("\nall checks hold");
+    Ok(())
+}
+
+struct Page {
+    folder: std::path::PathBuf,
+    package: std::path::PathBuf,
+    browser: std::path::PathBuf,
+}
+
+/// The built page and a browser for it; `None` where a tool is missing.
+fn page() -> Result<Option<Page>, Failure> {
+    let missing = crate::toolchain::WasmToolchain::find().err().or_else(|| browser::find().err());
+    match missing {
+        Some(reason) if in_ci() => Err(reason),
+        Some(reason) => {
+            eprintln!("SKIPPED: THE TESTS OF THE PAGE: {reason}");
+            Ok(None)
+        }
+        None => Ok(Some(Page {
+            folder: web::build_page()?,
+            package: web::build_package()?,
+            browser: browser::find()?,
+        })),
+    }
+}
+
+fn step<T>(name: &str, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    eprintln!("\n== {name}");
+    let start = Instant::now();
+    let value = work()?;
+    eprintln!("== {name}: {:.0} s", start.elapsed().as_secs_f64());
+    Ok(value)
+}
