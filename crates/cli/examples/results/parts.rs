@@ -202,8 +202,8 @@ pub(crate) fn write(report: &mut Report) -> object::Outcome {
         "R1 and R2 fall into one and two parts, R3 is the figure of at most half the sphere that falls into most; \
          cuts narrower than 0.1 d_m at n = 192 count as joined. The paper's own figure has f_d = 39 parts \
          (convex ones; ours are counted once whatever their shape). f_d grows with n because fewer cuts stay below 0.1 d_m. \
-         The bound is true but far from what is measured: it adds the errors of all parts as if they had one sign \
-         and were as large as that of the worst box. The figures are those of `measure`'s patches (256 random seeds, \
+         The bound holds here, far above what is measured: it adds the errors of all parts as if they had one sign \
+         and were as large as that of the worst box. (Star discrepancies of more than 20,000 points are upper bounds.) The figures are those of `measure`'s patches (256 random seeds, \
          every number of rings).",
     );
     Ok(())
