@@ -102,20 +102,26 @@ fn to_centroid(site: &Site, cell: &Cell) -> DVec3 {
 /// A cell with less than this share of its wanted mass is lost: its slope says nothing about how to regain it.
 const LOST: f64 = 0.1;
 
-/// Puts the sites of lost cells into the heaviest cells, which they then halve.
+/// A cell with more than this share of its wanted mass can take in the site of a lost one.
+const HEAVY: f64 = 1.1;
+
+/// Puts the sites of lost cells into heavy cells nearby, which they then halve. What a lost cell should have had its
+/// neighbours hold, so going farther would take points from where they are due.
 fn rescue(sites: &mut [Site], diagram: &Diagram, wanted: &[f64], d_m: f64) {
     let share = |i: usize| diagram.cells[i].mass / wanted[i];
     let lost: Vec<usize> = (0..sites.len()).filter(|&i| share(i) < LOST).collect();
     if lost.is_empty() {
         return;
     }
-    let mut heavy: Vec<usize> = (0..sites.len()).filter(|&i| share(i) > 1.0).collect();
-    heavy.sort_by(|&a, &b| share(b).total_cmp(&share(a)).then(a.cmp(&b)));
-    let mut taken = vec![false; sites.len()];
+    let mut heavy: Vec<usize> = (0..sites.len()).filter(|&i| share(i) > HEAVY).collect();
     for i in lost {
-        let partner = heavy.iter().copied().find(|&h| !taken[h] && sites[h].patch == sites[i].patch);
-        let Some(heavy) = partner else { continue };
-        taken[heavy] = true;
+        let from = sites[i];
+        let nearest = (0..heavy.len()).filter(|&h| sites[heavy[h]].patch == from.patch).min_by(|&a, &b| {
+            let distance = |h: usize| sites[heavy[h]].position.distance_squared(from.position);
+            distance(a).total_cmp(&distance(b))
+        });
+        let Some(nearest) = nearest else { continue };
+        let heavy = heavy.swap_remove(nearest);
         let cell = &diagram.cells[heavy];
         let (centroid, normal) = (cell.moment / cell.mass, cell.normal / cell.mass);
         let aside = normal.try_normalize().unwrap_or(DVec3::Z).any_orthonormal_vector() * (0.3 * d_m);
