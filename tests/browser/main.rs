@@ -67,9 +67,18 @@ fn keep_picture(chrome: &mut Chrome, name: &str) {
     fs::write(folder.join(name), bytes).expect("a picture");
 }
 
+/// What the page and the command line program do unless told otherwise.
+fn options(count: usize) -> Options {
+    Options {
+        request: Request::Count(count),
+        equalize: Some(EqualizeOptions::default()),
+        ..Options::default()
+    }
+}
+
 /// Native points: the face and the exact weights, in order.
 fn native(mesh: &SurfaceMesh, count: usize) -> (Vec<u32>, Vec<u64>, Vec<u32>) {
-    let options = Options { request: Request::Count(count), ..Options::default() };
+    let options = options(count);
     let run = pipeline::run(mesh, &options, &Silent).expect("a run");
     let faces = run.samples.iter().map(|s| s.point.face.0).collect();
     let weights = run.samples.iter().flat_map(|s| s.point.barycentric).map(f64::to_bits).collect();
@@ -237,7 +246,7 @@ fn what_is_downloaded_is_what_the_native_program_writes() {
         chrome.click("Points, CSV");
         let bytes = chrome.downloaded("cup-points.csv");
         let mesh = checked(&Shape::Cup.generate());
-        let run = pipeline::run(&mesh, &Options::default(), &Silent).expect("a run");
+        let run = pipeline::run(&mesh, &options(1000), &Silent).expect("a run");
         let rows: Vec<_> = run.samples.iter().map(|s| ldwrap::io::points::PointRow::new(&mesh, s)).collect();
         let mut native = Vec::new();
         ldwrap::io::points::write_points(ldwrap::io::points::PointFormat::Csv, &rows, &mut native)
@@ -269,18 +278,13 @@ fn the_javascript_api_gives_the_bits_of_the_native_library() {
             let text = String::from_utf8(bytes.clone()).expect("text");
             let call = format!(
                 "(w => [text(Uint32Array, w.faces), text(BigUint64Array, w.barycentric)])\
-                 (api.wrap(new TextEncoder().encode({}), 'drink.obj', {{request: {{count: 315}}, equalize: true}}))",
+                 (api.wrap(new TextEncoder().encode({}), 'drink.obj', {{request: {{count: 315}}}}))",
                 json!(text)
             );
             let got = chrome.evaluate(&call);
             let alone = |_: &str| Err(String::new());
             let mesh = checked(&ldwrap::io::read_mesh(&bytes, Some("drink.obj"), &alone).expect("a mesh"));
-            let equalize = Some(EqualizeOptions::default());
-            let options = Options { request: Request::Count(315), equalize, ..Options::default() };
-            let run = pipeline::run(&mesh, &options, &Silent).expect("a run");
-            let faces: Vec<u32> = run.samples.iter().map(|s| s.point.face.0).collect();
-            let weights: Vec<u64> =
-                run.samples.iter().flat_map(|s| s.point.barycentric).map(f64::to_bits).collect();
+            let (faces, weights, _) = native(&mesh, 315);
             assert_eq!(bits::<u32>(&got[0]), faces, "drink: faces");
             assert_eq!(bits::<u64>(&got[1]), weights, "drink: weights");
         }
