@@ -14,7 +14,8 @@ use crate::unfold::Strips;
 use crate::wrap::wrap;
 
 /// The most points that the planar domain can hold: they are numbered by 32 bits, and 2^30 of them take 20 GiB.
-pub(crate) const MOST_DOMAIN_POINTS: u32 = 1 << 30;
+/// Where memory has 32-bit addresses, 2^25 are what fits.
+pub(crate) const MOST_DOMAIN_POINTS: u32 = if usize::BITS < 64 { 1 << 25 } else { 1 << 30 };
 
 /// How many points are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,7 +171,10 @@ impl Scattering<'_> {
 fn thin_out(corrected: Vec<Corrected>, n: usize) -> Vec<Sample> {
     let count = corrected.len();
     let surplus = count.saturating_sub(n);
-    let mut left_out = (0..surplus).map(|k| ((2 * k + 1) * count) / (2 * surplus)).peekable();
+    // In 64 bits also where indices have 32.
+    let (wide_count, wide_surplus) = (count as u64, surplus as u64);
+    let mut left_out =
+        (0..wide_surplus).map(|k| (((2 * k + 1) * wide_count) / (2 * wide_surplus)) as usize).peekable();
     corrected
         .into_iter()
         .enumerate()

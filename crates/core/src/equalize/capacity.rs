@@ -27,11 +27,39 @@ pub(super) fn weight_steps(
         missing[a] -= passed;
         missing[b] += passed;
     }
+    level_parts(&mut missing, &diagram.borders);
     let mut steps = Laplacian::new(diagram.cells.len(), &diagram.borders).solve(&missing);
     for step in &mut steps {
         *step = step.clamp(-most, most);
     }
     steps
+}
+
+/// Takes its mean from each part of the cells that no border joins to another part. A patch may fall into parts whose
+/// masses are no whole numbers of cells; no weights mend that, and conjugate gradients would run away from it.
+fn level_parts(missing: &mut [f64], borders: &[Border]) {
+    let mut parents: Vec<u32> = (0..missing.len() as u32).collect();
+    for border in borders {
+        let (a, b) = (root(&mut parents, border.a), root(&mut parents, border.b));
+        parents[a.max(b) as usize] = a.min(b);
+    }
+    let mut sums = vec![(0.0, 0.0); missing.len()];
+    for (i, &value) in (0..).zip(missing.iter()) {
+        let part = &mut sums[root(&mut parents, i) as usize];
+        *part = (part.0 + value, part.1 + 1.0);
+    }
+    for (i, value) in (0..).zip(missing.iter_mut()) {
+        let (sum, count) = sums[root(&mut parents, i) as usize];
+        *value -= sum / count;
+    }
+}
+
+fn root(parents: &mut [u32], mut i: u32) -> u32 {
+    while parents[i as usize] != i {
+        parents[i as usize] = parents[parents[i as usize] as usize];
+        i = parents[i as usize];
+    }
+    i
 }
 
 /// A symmetric matrix with rows that sum to zero, in rows.
