@@ -199,6 +199,31 @@ fn orbiting_is_followed_by_the_visible_share() {
     });
 }
 
+#[test]
+fn two_methods_are_compared_behind_an_obstacle() {
+    on_page(DESKTOP, "", |chrome| {
+        wait_for_points(chrome, 1000);
+        let open = chrome.wait_for_state("s.look")["look"]["surface"].as_f64().expect("a share");
+        chrome.click("compare A and B");
+        chrome.wait_for_state("!s.busy && s.pointsOfB === 1000 && s.look?.points[1] !== null");
+        chrome.click("obstacle");
+        let state = chrome.wait_for_state(&format!("s.look.surface < 0.9 * {open}"));
+        for slot in 0..2 {
+            let points = state["look"]["points"][slot].as_f64().expect("a share");
+            let surface = state["look"]["surface"].as_f64().expect("a share");
+            assert!((points - surface).abs() < 0.06, "{state}");
+        }
+        for control in ["irregular band", "local surplus"] {
+            chrome.click(control);
+        }
+        chrome.wait_for_state("s.verdicts === 7");
+        keep_picture(chrome, "page-compare.png");
+        chrome.click("in the domain");
+        chrome.click("wireframe");
+        keep_picture(chrome, "page-domain.png");
+    });
+}
+
 /// Run alone, on a machine that does nothing else: `cargo test -p ldwrap-tests --test browser -- --ignored`, with the
 /// environment of `cargo xtask test`.
 #[test]
