@@ -67,9 +67,18 @@ fn keep_picture(chrome: &mut Chrome, name: &str) {
     fs::write(folder.join(name), bytes).expect("a picture");
 }
 
+/// What the page and the command line program do unless told otherwise.
+fn options(count: usize) -> Options {
+    Options {
+        request: Request::Count(count),
+        equalize: Some(EqualizeOptions::default()),
+        ..Options::default()
+    }
+}
+
 /// Native points: the face and the exact weights, in order.
 fn native(mesh: &SurfaceMesh, count: usize) -> (Vec<u32>, Vec<u64>, Vec<u32>) {
-    let options = Options { request: Request::Count(count), ..Options::default() };
+    let options = options(count);
     let run = pipeline::run(mesh, &options, &Silent).expect("a run");
     let faces = run.samples.iter().map(|s| s.point.face.0).collect();
     let weights = run.samples.iter().flat_map(|s| s.point.barycentric).map(f64::to_bits).collect();
@@ -190,6 +199,31 @@ fn orbiting_is_followed_by_the_visible_share() {
     });
 }
 
+#[test]
+fn two_methods_are_compared_behind_an_obstacle() {
+    on_page(DESKTOP, "", |chrome| {
+        wait_for_points(chrome, 1000);
+        let open = chrome.wait_for_state("s.look")["look"]["surface"].as_f64().expect("a share");
+        chrome.click("compare A and B");
+        chrome.wait_for_state("!s.busy && s.pointsOfB === 1000 && s.look?.points[1] !== null");
+        chrome.click("obstacle");
+        let state = chrome.wait_for_state(&format!("s.look.surface < 0.9 * {open}"));
+        for slot in 0..2 {
+            let points = state["look"]["points"][slot].as_f64().expect("a share");
+            let surface = state["look"]["surface"].as_f64().expect("a share");
+            assert!((points - surface).abs() < 0.06, "{state}");
+        }
+        for control in ["irregular band", "local surplus"] {
+            chrome.click(control);
+        }
+        chrome.wait_for_state("s.verdicts === 7");
+        keep_picture(chrome, "page-compare.png");
+        chrome.click("in the domain");
+        chrome.click("wireframe");
+        keep_picture(chrome, "page-domain.png");
+    });
+}
+
 /// Run alone, on a machine that does nothing else: `cargo test -p ldwrap-tests --test browser -- --ignored`, with the
 /// environment of `cargo xtask test`.
 #[test]
@@ -237,7 +271,7 @@ fn what_is_downloaded_is_what_the_native_program_writes() {
         chrome.click("Points, CSV");
         let bytes = chrome.downloaded("cup-points.csv");
         let mesh = checked(&Shape::Cup.generate());
-        let run = pipeline::run(&mesh, &Options::default(), &Silent).expect("a run");
+        let run = pipeline::run(&mesh, &options(1000), &Silent).expect("a run");
         let rows: Vec<_> = run.samples.iter().map(|s| ldwrap::io::points::PointRow::new(&mesh, s)).collect();
         let mut native = Vec::new();
         ldwrap::io::points::write_points(ldwrap::io::points::PointFormat::Csv, &rows, &mut native)
@@ -269,18 +303,13 @@ fn the_javascript_api_gives_the_bits_of_the_native_library() {
             let text = String::from_utf8(bytes.clone()).expect("text");
             let call = format!(
                 "(w => [text(Uint32Array, w.faces), text(BigUint64Array, w.barycentric)])\
-                 (api.wrap(new TextEncoder().encode({}), 'drink.obj', {{request: {{count: 315}}, equalize: true}}))",
+                 (api.wrap(new TextEncoder().encode({}), 'drink.obj', {{request: {{count: 315}}}}))",
                 json!(text)
             );
             let got = chrome.evaluate(&call);
             let alone = |_: &str| Err(String::new());
             let mesh = checked(&ldwrap::io::read_mesh(&bytes, Some("drink.obj"), &alone).expect("a mesh"));
-            let equalize = Some(EqualizeOptions::default());
-            let options = Options { request: Request::Count(315), equalize, ..Options::default() };
-            let run = pipeline::run(&mesh, &options, &Silent).expect("a run");
-            let faces: Vec<u32> = run.samples.iter().map(|s| s.point.face.0).collect();
-            let weights: Vec<u64> =
-                run.samples.iter().flat_map(|s| s.point.barycentric).map(f64::to_bits).collect();
+            let (faces, weights, _) = native(&mesh, 315);
             assert_eq!(bits::<u32>(&got[0]), faces, "drink: faces");
             assert_eq!(bits::<u64>(&got[1]), weights, "drink: weights");
         }

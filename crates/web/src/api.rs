@@ -38,7 +38,7 @@ export interface Options {
   smallestShare?: number;
   /** Interstices and overlaps thinner than this many d_m are corrected. Default: 0.1. */
   tolerance?: number;
-  /** Whether every point is moved to stand for the same area. */
+  /** Whether every point is moved to stand for the same area. Default: true. */
   equalize?: boolean;
 }
 

@@ -64,6 +64,9 @@ pub enum Notice {
 /// The share of points minus the share of surface that a view showed, for A and B.
 pub type TrailStep = [Option<f64>; 2];
 
+/// A file's name and bytes.
+pub type NamedFile = (String, Vec<u8>);
+
 /// How many views the trail remembers.
 const TRAIL: usize = 160;
 
@@ -107,7 +110,7 @@ pub struct Model {
     /// What the person is told.
     pub notice: Option<Notice>,
     /// Files made, to be saved.
-    pub files: Vec<(String, Vec<u8>)>,
+    pub files: Vec<NamedFile>,
     /// Whether a picture of the views is to be saved.
     pub picture_wanted: bool,
     /// Where the work in hand stands.

@@ -59,13 +59,13 @@ pub struct Settings {
     pub smallest_share: f64,
     /// Interstices and overlaps thinner than this many d_m are corrected.
     pub tolerance: f64,
-    /// Whether the points are equalized.
+    /// Whether wrapped points are equalized, as the command line program does. Default: true.
     pub equalize: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        let Options { request, segment, sequence, seed, tolerance, equalize } = Options::default();
+        let Options { request, segment, sequence, seed, tolerance, equalize: _ } = Options::default();
         Self {
             request,
             method: Method::default(),
@@ -75,7 +75,7 @@ impl Default for Settings {
             growth: segment.order,
             smallest_share: segment.smallest_share,
             tolerance,
-            equalize: equalize.is_some(),
+            equalize: true,
         }
     }
 }
@@ -84,6 +84,7 @@ impl Settings {
     /// The library's options; what the method fixes overrides what was set.
     pub fn options(&self) -> Options {
         let paper = self.method == Method::Paper;
+        let equalize = self.equalize && self.method == Method::Wrap;
         Options {
             request: self.request,
             segment: SegmentOptions {
@@ -94,7 +95,7 @@ impl Settings {
             sequence: self.sequence,
             seed: self.seed,
             tolerance: self.tolerance,
-            equalize: (self.equalize && !paper).then(EqualizeOptions::default),
+            equalize: equalize.then(EqualizeOptions::default),
         }
     }
 
@@ -170,8 +171,9 @@ mod tests {
     }
 
     #[test]
-    fn the_default_settings_are_the_librarys_default_options() {
-        let (ours, theirs) = (Settings::default().options(), Options::default());
+    fn the_default_settings_are_the_librarys_default_options_equalized() {
+        let equalize = Some(EqualizeOptions::default());
+        let (ours, theirs) = (Settings::default().options(), Options { equalize, ..Options::default() });
         assert!((ours.segment.flatness_angle - theirs.segment.flatness_angle).abs() < 1e-12);
         assert_eq!(Options { segment: theirs.segment, ..ours }, theirs);
     }

@@ -4,8 +4,10 @@ use std::sync::{Arc, Mutex};
 
 use eframe::egui;
 
+use crate::model::NamedFile;
+
 /// A file's name and bytes, or why it could not be read.
-type Arrived = Result<(String, Vec<u8>), String>;
+type Arrived = Result<NamedFile, String>;
 
 /// Files that were opened or dropped and wait to be loaded.
 #[derive(Clone)]

@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex};
 use eframe::egui::{self, Align2, FontId, RichText};
 
 use crate::engine::{Job, Slot};
-use crate::model::{Desk, Model, Notice};
+use crate::model::{Desk, Model, NamedFile, Notice};
 use crate::settings::Link;
 use crate::source::Source;
 use draw::{Gpu, Picture};
@@ -42,7 +42,7 @@ pub struct App {
     /// The time that frames take.
     frames: Frames,
     /// Pictures that were taken and wait to be saved.
-    taken: Arc<Mutex<Vec<(String, Vec<u8>)>>>,
+    taken: Arc<Mutex<Vec<NamedFile>>>,
     saved: Vec<(String, usize)>,
 }
 

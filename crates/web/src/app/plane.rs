@@ -100,7 +100,7 @@ pub(super) fn show(
 
 /// How wide points are, in egui's units, where `unit` of them show one unit of the mesh: a part of their distance.
 pub(super) fn point_size(run: &RunScene, unit: f32) -> f32 {
-    (0.42 * run.d_m as f32 * unit).clamp(1.8, 9.0)
+    (0.5 * run.d_m as f32 * unit).clamp(2.6, 9.0)
 }
 
 fn place(run: &RunScene, layout: Layout, pick: Pick) -> Option<Vec2> {

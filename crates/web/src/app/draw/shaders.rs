@@ -58,6 +58,8 @@ void main() {
     for (int side = 0; side < 3; side++) {
         uint kind = (v_sides >> uint(2 * side)) & 3u;
         float border = kind == 2u ? 0.8 * line(distance[side], 0.8) : kind == 1u ? 0.3 * line(distance[side], 0.5) : 0.0;
+        // Where triangles are smaller than lines, lines would hide everything.
+        border *= mix(0.3, 1.0, smoothstep(1.5, 7.0, height));
         colour = mix(colour, u_ink, u_borders * border);
     }
     if (((v_sides >> 6) & 1u) == 1u) {
