@@ -48,7 +48,15 @@ fn build(folder: &Path, features: &[&str]) -> Result<(), Failure> {
         .env("RUSTFLAGS", format!("--remap-path-prefix={}=.", root().display())))?;
     fs::create_dir_all(folder)?;
     run(command(bindgen)
-        .args(["--target", "web", "--remove-name-section", "--remove-producers-section", "--out-name", "ldwrap_web", "--out-dir"])
+        .args([
+            "--target",
+            "web",
+            "--remove-name-section",
+            "--remove-producers-section",
+            "--out-name",
+            "ldwrap_web",
+            "--out-dir",
+        ])
         .arg(folder)
         .arg(toolchain.built(PROFILE, "ldwrap_web.wasm")))
 }
