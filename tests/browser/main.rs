@@ -9,6 +9,7 @@ use std::process::Command;
 use std::sync::Mutex;
 
 use chrome::{Chrome, DESKTOP, Screen};
+use ldwrap::equalize::EqualizeOptions;
 use ldwrap::pipeline::{self, Options, Request};
 use ldwrap::shapes::Shape;
 use ldwrap::{CheckOptions, Silent, SurfaceMesh};
@@ -189,6 +190,45 @@ fn orbiting_is_followed_by_the_visible_share() {
     });
 }
 
+/// Run alone, on a machine that does nothing else: `cargo test -p ldwrap-tests --test browser -- --ignored`, with the
+/// environment of `cargo xtask test`.
+#[test]
+#[ignore = "measures time"]
+fn measure_the_horse() {
+    let Some(meshes) = std::env::var_os("LDWRAP_MESHES").map(PathBuf::from) else {
+        eprintln!("SKIPPED: LDWRAP_MESHES is not set");
+        return;
+    };
+    on_page(DESKTOP, "", |chrome| {
+        wait_for_points(chrome, 1000);
+        eprintln!("time to the first picture, cup: {} s", chrome.state()["firstPictureSeconds"]);
+    });
+    let link = "#%7B%22settings%22%3A%7B%22request%22%3A%7B%22count%22%3A10000%7D%7D%7D";
+    on_page(DESKTOP, link, |chrome| {
+        wait_for_points(chrome, 10_000);
+        chrome.drop_file(&meshes.join("horse.ply"));
+        let state = chrome
+            .wait_for_state("!s.busy && s.mesh === 'horse.ply' && s.points === 10000 && s.verdicts === 7");
+        eprintln!("wasm, one thread: {} s", state["seconds"]);
+        let (x, y) = chrome.place_of("Surface");
+        chrome.move_to((x, y));
+        chrome.press((x, y), true);
+        for step in 1..60 {
+            chrome.drag_to((x + 2.0 * f64::from(step), y));
+            std::thread::sleep(std::time::Duration::from_millis(30));
+        }
+        chrome.press((x + 120.0, y), false);
+        eprintln!("a frame while orbiting, software rendering: {} ms", chrome.state()["frameMilliseconds"]);
+        keep_picture(chrome, "page-horse.png");
+    });
+    let bytes = fs::read(meshes.join("horse.ply")).expect("the horse");
+    let alone = |_: &str| Err(String::new());
+    let mesh = checked(&ldwrap::io::read_mesh(&bytes, Some("horse.ply"), &alone).expect("a mesh"));
+    let start = std::time::Instant::now();
+    native(&mesh, 10_000);
+    eprintln!("native, all threads: {:.2} s", start.elapsed().as_secs_f64());
+}
+
 #[test]
 fn what_is_downloaded_is_what_the_native_program_writes() {
     on_page(DESKTOP, "", |chrome| {
@@ -223,6 +263,26 @@ fn the_javascript_api_gives_the_bits_of_the_native_library() {
             assert_eq!(bits::<u32>(&got[0]), faces, "{}: faces", shape.name());
             assert_eq!(bits::<u64>(&got[1]), weights, "{}: weights", shape.name());
             assert_eq!(bits::<u32>(&got[2]), positions, "{}: positions", shape.name());
+        }
+        if let Some(meshes) = std::env::var_os("LDWRAP_MESHES").map(PathBuf::from) {
+            let bytes = fs::read(meshes.join("fruit-drink-800.obj")).expect("the drink");
+            let text = String::from_utf8(bytes.clone()).expect("text");
+            let call = format!(
+                "(w => [text(Uint32Array, w.faces), text(BigUint64Array, w.barycentric)])\
+                 (api.wrap(new TextEncoder().encode({}), 'drink.obj', {{request: {{count: 315}}, equalize: true}}))",
+                json!(text)
+            );
+            let got = chrome.evaluate(&call);
+            let alone = |_: &str| Err(String::new());
+            let mesh = checked(&ldwrap::io::read_mesh(&bytes, Some("drink.obj"), &alone).expect("a mesh"));
+            let equalize = Some(EqualizeOptions::default());
+            let options = Options { request: Request::Count(315), equalize, ..Options::default() };
+            let run = pipeline::run(&mesh, &options, &Silent).expect("a run");
+            let faces: Vec<u32> = run.samples.iter().map(|s| s.point.face.0).collect();
+            let weights: Vec<u64> =
+                run.samples.iter().flat_map(|s| s.point.barycentric).map(f64::to_bits).collect();
+            assert_eq!(bits::<u32>(&got[0]), faces, "drink: faces");
+            assert_eq!(bits::<u64>(&got[1]), weights, "drink: weights");
         }
         let told = chrome.evaluate(
             "(() => { try { api.wrapShape('cup', {seeds: 1}) } catch (e) { return e.message } })()",

@@ -210,9 +210,6 @@ fn tell(function: &js_sys::Function, answer: &Answer) {
 }
 
 #[cfg(feature = "page")]
-pub use page::{Page, start};
-
-#[cfg(feature = "page")]
 mod page {
     use super::*;
     use crate::app::App;

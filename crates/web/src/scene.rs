@@ -109,8 +109,10 @@ impl MeshScene {
     /// The picture of a mesh.
     pub fn new(name: &str, mesh: &SurfaceMesh, repaired: &RepairReport) -> Self {
         let (low, high) = mesh.bounds();
-        let corners =
+        let corners: Vec<Vec3> =
             (0..mesh.face_count()).flat_map(|f| mesh.triangle(FaceId::new(f)).map(|p| p.as_vec3())).collect();
+        let centre = (0.5 * (low + high)).as_vec3();
+        let radius = corners.iter().fold(0.0_f32, |m, p| m.max(p.distance(centre)));
         Self {
             name: name.to_owned(),
             corners,
