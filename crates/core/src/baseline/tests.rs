@@ -1,3 +1,5 @@
+//! Baselines against planted answers.
+
 use glam::DVec3;
 
 use super::*;

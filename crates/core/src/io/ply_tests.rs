@@ -1,3 +1,5 @@
+//! Files of PLY, good and bad.
+
 use super::*;
 
 const HEAD: &str = "ply\nformat FORMAT 1.0\ncomment caf\u{e9}\nobj_info x\nelement vertex 4\nproperty double x\n\

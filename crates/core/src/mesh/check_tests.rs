@@ -1,3 +1,5 @@
+//! Soups with known faults.
+
 use glam::{DVec3, dvec3};
 use proptest::prelude::*;
 

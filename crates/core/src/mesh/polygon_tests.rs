@@ -1,3 +1,5 @@
+//! Polygons cut into triangles.
+
 use glam::{DMat3, DVec3, dvec3};
 use proptest::prelude::*;
 

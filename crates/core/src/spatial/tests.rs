@@ -1,3 +1,5 @@
+//! Rays, sight and nearest points against planted answers and full searches.
+
 use glam::DVec3;
 use proptest::prelude::*;
 

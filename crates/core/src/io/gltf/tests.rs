@@ -1,3 +1,5 @@
+//! Files of glTF, good and bad.
+
 use super::*;
 use crate::mesh::{CheckOptions, SurfaceMesh};
 

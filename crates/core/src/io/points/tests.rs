@@ -1,3 +1,5 @@
+//! Points written and read again, and files that lie.
+
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! Views whose visible shares are known.
+
 use glam::DVec3;
 
 use super::*;

@@ -1,3 +1,5 @@
+//! Counts and areas of the shapes.
+
 use std::f64::consts::PI;
 
 use glam::DVec3;
