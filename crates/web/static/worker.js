@@ -9,10 +9,12 @@ self.onmessage = ({ data }) => {
       () => new Work((answer) => self.postMessage(answer, [answer.buffer])),
     );
   } else {
-    // Jobs wait for the module and keep their order; an error ends in the page's handler.
+    // Jobs wait for the module and keep their order.
     work = work.then((ready) => {
       ready.handle(data);
       return ready;
     });
+    // Thrown outside of the promise, an error reaches the page, which starts another worker.
+    work.catch((error) => setTimeout(() => { throw error; }));
   }
 };

@@ -1,6 +1,6 @@
 //! An engine in a web worker, which runs the same wasm module as the page.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::rc::Rc;
 
@@ -16,6 +16,7 @@ pub(crate) struct EngineLink {
     worker: Worker,
     answers: Rc<RefCell<VecDeque<Answer>>>,
     wake: Rc<dyn Fn()>,
+    broken: Rc<Cell<bool>>,
     journal: Journal,
 }
 
@@ -24,8 +25,9 @@ impl EngineLink {
     pub(crate) fn start(wake: impl Fn() + 'static) -> Result<Self, String> {
         let wake: Rc<dyn Fn()> = Rc::new(wake);
         let answers = Rc::default();
-        let worker = start_worker(&answers, &wake)?;
-        Ok(Self { worker, answers, wake, journal: Journal::default() })
+        let broken = Rc::default();
+        let worker = start_worker(&answers, &wake, &broken)?;
+        Ok(Self { worker, answers, wake, broken, journal: Journal::default() })
     }
 
     /// Gives it work.
@@ -36,6 +38,11 @@ impl EngineLink {
 
     /// What it has said since the last time.
     pub(crate) fn take(&mut self) -> Vec<Answer> {
+        if self.broken.take() {
+            self.restart();
+            let reason = "the work failed: perhaps the mesh is too large for the browser's memory";
+            return vec![Answer::Failed(reason.into())];
+        }
         let said: Vec<Answer> = self.answers.borrow_mut().drain(..).collect();
         said.into_iter().filter(|answer| self.journal.receive(answer)).collect()
     }
@@ -46,16 +53,20 @@ impl EngineLink {
         if !self.journal.is_working() {
             return;
         }
+        self.restart();
+        self.answers.borrow_mut().push_front(Answer::Cancelled);
+        (self.wake)();
+    }
+
+    fn restart(&mut self) {
         self.worker.terminate();
         self.answers.borrow_mut().clear();
-        if let Ok(worker) = start_worker(&self.answers, &self.wake) {
+        if let Ok(worker) = start_worker(&self.answers, &self.wake, &self.broken) {
             self.worker = worker;
         }
         for job in self.journal.restart() {
             send(&self.worker, &job);
         }
-        self.answers.borrow_mut().push_front(Answer::Cancelled);
-        (self.wake)();
     }
 }
 
@@ -65,7 +76,11 @@ fn send(worker: &Worker, job: &Job) {
     let _ = worker.post_message(&js_sys::Uint8Array::from(bytes.as_slice()));
 }
 
-fn start_worker(answers: &Rc<RefCell<VecDeque<Answer>>>, wake: &Rc<dyn Fn()>) -> Result<Worker, String> {
+fn start_worker(
+    answers: &Rc<RefCell<VecDeque<Answer>>>,
+    wake: &Rc<dyn Fn()>,
+    broken: &Rc<Cell<bool>>,
+) -> Result<Worker, String> {
     let options = WorkerOptions::new();
     options.set_type(WorkerType::Module);
     let worker =
@@ -80,10 +95,10 @@ fn start_worker(answers: &Rc<RefCell<VecDeque<Answer>>>, wake: &Rc<dyn Fn()>) ->
     });
     worker.set_onmessage(Some(on_message.as_ref().unchecked_ref()));
     on_message.forget();
-    let (queue, called) = (Rc::clone(answers), Rc::clone(wake));
-    let on_error = Closure::<dyn FnMut(Event)>::new(move |_| {
-        let reason = "the work failed: perhaps the mesh is too large for the browser's memory";
-        queue.borrow_mut().push_back(Answer::Failed(reason.into()));
+    let (broken, called) = (Rc::clone(broken), Rc::clone(wake));
+    let on_error = Closure::<dyn FnMut(Event)>::new(move |event: Event| {
+        event.prevent_default();
+        broken.set(true);
         called();
     });
     worker.set_onerror(Some(on_error.as_ref().unchecked_ref()));
