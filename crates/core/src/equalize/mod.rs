@@ -1,8 +1,7 @@
 //! Equalizing: beyond the paper, every point ends up standing for the same area.
 //!
-//! Coarse to fine: whole numbers of points for components, segments and planes ([`patches`]), a hierarchy of balanced
-//! splits down to a region for each point ([`balance`]), then relaxation of power cells on the surface ([`relax`]).
-//! docs/METHOD.md explains it with pictures.
+//! Coarse to fine: whole numbers of points for components, segments and planes (`patches`), a hierarchy of balanced
+//! splits down to a region for each point (`balance`), then relaxation of power cells on the surface (`relax`).
 
 mod balance;
 mod capacity;

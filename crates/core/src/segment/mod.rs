@@ -65,7 +65,7 @@ pub struct Segment {
 /// Every face of the mesh in exactly one segment.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Segmentation {
-    /// The segments; the index is the [`StripId`](crate::StripId).
+    /// The segments; the index is the [`StripId`].
     pub segments: Vec<Segment>,
 }
 
