@@ -193,6 +193,15 @@ impl Chrome {
         self.press(place, false);
     }
 
+    /// Activates a control as assistive technology does, also where it is scrolled out of sight.
+    pub(crate) fn activate(&mut self, name: &str) {
+        self.place_of(name);
+        self.evaluate(&format!(
+            "[...document.querySelectorAll('#mirror > div')].find(e => e.ariaLabel === {}).click()",
+            json!(name)
+        ));
+    }
+
     /// Presses a key, by the names of its meaning and of its place in the DOM.
     pub(crate) fn key(&mut self, key: &str, code: &str) {
         for kind in ["rawKeyDown", "keyUp"] {

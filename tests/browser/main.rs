@@ -206,7 +206,7 @@ fn two_methods_are_compared_behind_an_obstacle() {
         let open = chrome.wait_for_state("s.look")["look"]["surface"].as_f64().expect("a share");
         chrome.click("compare A and B");
         chrome.wait_for_state("!s.busy && s.pointsOfB === 1000 && s.look?.points[1] !== null");
-        chrome.click("obstacle");
+        chrome.activate("obstacle");
         let state = chrome.wait_for_state(&format!("s.look.surface < 0.9 * {open}"));
         for slot in 0..2 {
             let points = state["look"]["points"][slot].as_f64().expect("a share");
@@ -214,12 +214,12 @@ fn two_methods_are_compared_behind_an_obstacle() {
             assert!((points - surface).abs() < 0.06, "{state}");
         }
         for control in ["irregular band", "local surplus"] {
-            chrome.click(control);
+            chrome.activate(control);
         }
         chrome.wait_for_state("s.verdicts === 7");
         keep_picture(chrome, "page-compare.png");
-        chrome.click("in the domain");
-        chrome.click("wireframe");
+        chrome.activate("in the domain");
+        chrome.activate("wireframe");
         keep_picture(chrome, "page-domain.png");
     });
 }

@@ -210,7 +210,9 @@ fn tell(function: &js_sys::Function, answer: &Answer) {
 }
 
 #[cfg(feature = "page")]
-mod page {
+pub mod page {
+    //! Starts the page on a canvas.
+
     use super::*;
     use crate::app::App;
     use crate::settings::Link;

@@ -13,7 +13,7 @@
 //! The page never works itself: it posts jobs to a web worker (in a window: a thread) and draws what comes back.
 
 #[cfg(target_arch = "wasm32")]
-mod api;
+pub mod api;
 #[cfg(feature = "page")]
 pub mod app;
 pub mod camera;
