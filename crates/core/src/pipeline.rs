@@ -149,9 +149,11 @@ fn equalize_samples(
     let points: Vec<_> = samples.iter().map(|s| s.point).collect();
     let strip_of_face: Vec<_> = strips.places.iter().map(|p| p.strip).collect();
     let equalized = equalize(mesh, &points, &strip_of_face, options, progress);
-    let samples = equalized.points.into_iter().map(|point| {
+    let samples = equalized.points.into_iter().zip(samples).map(|(point, before)| {
         let (strip, place) = strips.lay_point(&point);
-        Sample { point, strip, place: place + domain.offsets[strip.index()], origin: Origin::Equalized }
+        // What the correction moved stays known: equalizing keeps the order of the points.
+        let origin = if before.origin == Origin::Projected { Origin::Projected } else { Origin::Equalized };
+        Sample { point, strip, place: place + domain.offsets[strip.index()], origin }
     });
     (samples.collect(), equalized.report)
 }

@@ -22,9 +22,10 @@ pub struct SurfacePoint {
 pub enum Origin {
     /// A point of the planar domain inside a strip, mapped back (paper, 4.2 step 4).
     Wrapped,
-    /// A point inside a thin interstice, projected onto the closest edge (paper, 4.2 step 5 b).
+    /// A point inside a thin interstice, projected onto the closest edge (paper, 4.2 step 5 b); equalizing may have
+    /// moved it on from there.
     Projected,
-    /// Moved along the surface by equalizing.
+    /// A wrapped point moved along the surface by equalizing.
     Equalized,
 }
 
