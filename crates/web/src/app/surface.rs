@@ -44,8 +44,9 @@ pub(super) fn show(
     let backward = model.orbit.backward();
     let (right, up) = model.orbit.axes();
     let scale = ui.ctx().pixels_per_point();
+    let seen = rect.height().min(rect.width());
     let size = model.runs[slot.index()].as_ref().filter(|_| model.shown.points);
-    let size = size.map(|run| super::plane::point_size(run, rect.height() / model.orbit.height()) * scale);
+    let size = size.map(|run| super::plane::point_size(run, seen / model.orbit.height()) * scale);
     let shot = Shot {
         matrix,
         eye: model.orbit.eye(),
@@ -129,7 +130,8 @@ fn position(model: &Model, pick: Pick) -> Option<Vec3> {
 }
 
 fn steer(ui: &egui::Ui, rect: Rect, model: &mut Model, response: &egui::Response) {
-    let height = rect.height().max(1.0);
+    // In a view higher than wide it is the width that shows what the camera's height says.
+    let height = rect.height().min(rect.width()).max(1.0);
     let drag = response.drag_delta() / height;
     let drag = Vec2::new(drag.x, drag.y);
     let panning = ui.input(|i| i.modifiers.shift || i.pointer.secondary_down() || i.pointer.middle_down());
