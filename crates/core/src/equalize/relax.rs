@@ -53,7 +53,8 @@ pub(super) fn relax(
         if progress.is_cancelled() {
             break;
         }
-        if drift > DRIFT {
+        // The weights are fitted at last to cells that miss no candidate.
+        if drift > DRIFT || round == rounds {
             candidates = Candidates::find(tiles, &sites, d_m, SKIN * unit);
             drift = 0.0;
         }
