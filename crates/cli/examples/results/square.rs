@@ -83,7 +83,7 @@ pub(crate) fn write(report: &mut Report) -> std::io::Result<()> {
     report.say(
         "Exact (`ldwrap::measure::plane`), as shares. The last column is over the root mean square of independent \
          points. A box that ends just before a column of the lattice misses all of it, so the lattice has nearly four times \
-         the star discrepancy of the Hammersley points, and random points have six times: the paper's reason for figure 1.",
+         the star discrepancy of the Hammersley points, and this set of random points has several times: the paper's reason for figure 1.",
     );
     Ok(())
 }
