@@ -274,3 +274,41 @@ fn lay_apart(strips: &Strips) -> (Vec<Vec2>, Vec2) {
 pub fn sides_of(face: u32) -> Range<usize> {
     3 * face as usize..3 * face as usize + 3
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::{Answer, Engine, Job, Slot};
+    use crate::settings::Settings;
+    use crate::source::Source;
+    use ldwrap::Silent;
+    use ldwrap::shapes::Shape;
+
+    #[test]
+    fn strips_side_by_side_do_not_cover_each_other() {
+        let mut engine = Engine::default();
+        engine.handle(Job::Load(Source::Shape(Shape::Cup)), &Silent, &|| 0.0);
+        let Answer::Wrapped(_, run) =
+            engine.handle(Job::Wrap(Slot::A, Settings::default()), &Silent, &|| 0.0)
+        else {
+            panic!("not wrapped")
+        };
+        assert!(run.strips.len() > 1);
+        for (k, a) in run.strips.iter().enumerate() {
+            for b in &run.strips[k + 1..] {
+                let apart =
+                    (a.apart + a.extent).cmple(b.apart).any() || (b.apart + b.extent).cmple(a.apart).any();
+                assert!(apart, "{a:?} {b:?}");
+            }
+        }
+        let slack = Vec2::splat(1e-4 * run.apart_extent.max_element());
+        for face in 0..run.strip_of.len() as u32 {
+            let strip = &run.strips[run.strip_of[face as usize] as usize];
+            for corner in run.planar_triangle(Layout::Apart, face) {
+                let inside = corner.cmpge(strip.apart - slack).all()
+                    && corner.cmple(strip.apart + strip.extent + slack).all();
+                assert!(inside, "triangle {face} of {strip:?} at {corner}");
+            }
+        }
+    }
+}

@@ -60,7 +60,7 @@ pub(super) fn show(
         painter.rect_stroke(square, 0.0, Stroke::new(1.0, ink.gamma_multiply(0.6)), StrokeKind::Outside);
     }
     let scale = ui.ctx().pixels_per_point();
-    let band = if model.shown.band { [0.85, 0.1, 0.1, 0.38] } else { [0.0; 4] };
+    let band = model.shown.band.then_some([0.85, 0.1, 0.1, 0.38]);
     let shot = Shot {
         matrix,
         eye: Vec3::ZERO,

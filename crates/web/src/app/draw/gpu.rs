@@ -45,8 +45,8 @@ pub(crate) struct Shot {
 pub(crate) struct Covers {
     /// Over places that a strip covers more than once.
     pub(crate) overlap: [f32; 4],
-    /// Over the band along the open border.
-    pub(crate) band: [f32; 4],
+    /// Over the band along the open border, where that is shown.
+    pub(crate) band: Option<[f32; 4]>,
 }
 
 /// What the driver holds of one picture.
@@ -220,10 +220,12 @@ impl Gpu {
                 gl.draw_arrays(glow::TRIANGLES, 0, held.triangles.count);
                 // The band lies behind all triangles but before the empty plane: it passes only where a triangle
                 // was drawn, and only once.
-                gl.depth_mask(true);
-                cover(covers.band);
-                gl.bind_vertex_array(Some(held.band.array));
-                gl.draw_arrays(glow::TRIANGLES, 0, held.band.count);
+                if let Some(band) = covers.band {
+                    gl.depth_mask(true);
+                    cover(band);
+                    gl.bind_vertex_array(Some(held.band.array));
+                    gl.draw_arrays(glow::TRIANGLES, 0, held.band.count);
+                }
             }
         }
     }
