@@ -43,6 +43,8 @@ pub(crate) enum Command {
     Measure(MeasureArgs),
     /// Compare methods by all measures
     Compare(CompareArgs),
+    /// Show a mesh, its strips, points and what a view sees in a window; needs the program ldwrap-web
+    View(ViewArgs),
     /// Print the completions of a shell
     #[command(hide = true)]
     Completions {
@@ -343,6 +345,13 @@ pub(crate) struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// The mesh: a PLY, OBJ, STL, glTF, GLB or OFF file
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
 }
 
 fn point_formats() -> impl TypedValueParser<Value = PointFormat> {

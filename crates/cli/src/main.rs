@@ -40,6 +40,7 @@ fn run(line: &CommandLine) -> Outcome {
         Command::Shape(args) => commands::shape::run(args, line.quiet),
         Command::Measure(args) => commands::measure::run(args, line.quiet),
         Command::Compare(args) => commands::compare::run(args, line.quiet),
+        Command::View(args) => commands::view::run(args, line.quiet),
         Command::Completions { shell } => commands::help::completions(*shell),
         Command::Man { command } => commands::help::man(command.as_deref()),
     }

@@ -6,6 +6,7 @@ pub(crate) mod info;
 pub(crate) mod measure;
 pub(crate) mod shape;
 pub(crate) mod strips;
+pub(crate) mod view;
 pub(crate) mod wrap;
 
 /// `1 point`, `2 points`.

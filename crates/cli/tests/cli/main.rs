@@ -7,5 +7,6 @@ mod measure;
 mod outputs;
 mod repairs;
 mod shape;
+mod view;
 mod wrap;
 mod wrong_use;
