@@ -131,6 +131,9 @@ fn steer(
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         view.zoom(aspect, in_clip(rect, at), (scroll * 0.005).exp() * pinch);
     }
+    if response.has_focus() {
+        keys::steer_plane(ui.ctx(), view, aspect);
+    }
     if *view != before {
         model.plane = Some(*view);
     }
