@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket, client};
 
 /// How long anything may take before the test fails. Software rendering on a busy machine is slow.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// What a page looks like to a person.
 #[derive(Clone, Copy)]
@@ -123,8 +123,8 @@ impl Chrome {
         message
     }
 
-    /// Breaks the page's first worker as a defect in it would: with an error that nobody catches.
-    pub(crate) fn break_first_worker(&mut self) {
+    /// Breaks the page's workers as a defect in them would: with an error that nobody catches.
+    pub(crate) fn break_workers(&mut self) {
         let attach = json!({"autoAttach": true, "waitForDebuggerOnStart": false, "flatten": true});
         self.call("Target.setAutoAttach", attach);
         let start = Instant::now();
@@ -132,9 +132,11 @@ impl Chrome {
             assert!(start.elapsed() < PATIENCE, "no worker");
             self.evaluate("0");
         }
-        let page = std::mem::replace(&mut self.session, self.workers[0].clone());
-        self.evaluate("void setTimeout(() => { throw new Error('broken by the test') })");
-        self.session = page;
+        for worker in std::mem::take(&mut self.workers) {
+            let page = std::mem::replace(&mut self.session, worker);
+            self.evaluate("void setTimeout(() => { throw new Error('broken by the test') })");
+            self.session = page;
+        }
     }
 
     /// Errors that the page has reported so far.

@@ -9,6 +9,19 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("{value} is not a number"))
 }
 
+/// The state when the wheel's motion, which egui smooths, has come to rest.
+fn at_rest(chrome: &mut Chrome) -> Value {
+    loop {
+        let views = |state: &Value| [state["plane"].clone(), state["distance"].clone()];
+        let before = chrome.state();
+        std::thread::sleep(std::time::Duration::from_millis(500));
+        let now = chrome.state();
+        if views(&now) == views(&before) {
+            return now;
+        }
+    }
+}
+
 fn drag(chrome: &mut Chrome, (x, y): (f64, f64), (dx, dy): (f64, f64)) {
     chrome.move_to((x, y));
     chrome.press((x, y), true);
@@ -26,18 +39,18 @@ fn the_plane_is_moved_by_wheel_pointer_and_keys() {
         let (x, y) = chrome.place_of("Planar domain");
         chrome.move_to((x - 40.0, y - 60.0));
         chrome.scroll((x - 40.0, y - 60.0), -300.0);
-        let state = chrome.wait_for_state("s.plane");
-        let zoomed = number(&state["plane"]["halfHeight"]);
+        chrome.wait_for_state("s.plane");
+        let before = number(&at_rest(chrome)["plane"]["centre"][0]);
         drag(chrome, (x, y), (60.0, 0.0));
-        let before = number(&state["plane"]["centre"][0]);
-        chrome.wait_for_state(&format!("s.plane.centre[0] < {before} - 0.05 * {zoomed}"));
+        chrome.wait_for_state(&format!("s.plane.centre[0] < {before} - 0.02"));
         // A click gives the plane the keys.
         chrome.press((x, y), true);
         chrome.press((x, y), false);
-        chrome.wait_for_state("s.pinned || s.hover === null");
+        at_rest(chrome);
         let before = number(&chrome.state()["plane"]["centre"][0]);
         chrome.key("ArrowRight", "ArrowRight");
         chrome.wait_for_state(&format!("s.plane.centre[0] > {before}"));
+        let zoomed = number(&chrome.state()["plane"]["halfHeight"]);
         chrome.key("-", "Minus");
         chrome.wait_for_state(&format!("s.plane.halfHeight > 1.1 * {zoomed}"));
         assert_eq!(chrome.state()["yaw"], yaw, "the surface was turned too");
@@ -56,6 +69,7 @@ fn the_surface_is_turned_by_pointer_and_keys_and_zoomed_by_the_wheel() {
         let turned = number(&chrome.wait_for_state(&format!("s.yaw < {yaw} - 0.2"))["yaw"]);
         chrome.scroll(at, -300.0);
         chrome.wait_for_state(&format!("s.distance < 0.9 * {distance}"));
+        at_rest(chrome);
         chrome.key("ArrowLeft", "ArrowLeft");
         chrome.wait_for_state(&format!("s.yaw > {turned} + 0.1"));
         assert_eq!(chrome.state()["up"], "Z");

@@ -26,15 +26,15 @@ fn it_opens_again_without_its_server() {
 }
 
 #[test]
-fn a_worker_that_breaks_is_replaced() {
+fn workers_that_break_are_replaced() {
     on_page(DESKTOP, "", |chrome| {
         wait_for_points(chrome, 1000);
         chrome.wait_for_state("s.verdicts === 7");
-        chrome.break_first_worker();
+        chrome.break_workers();
         let state = chrome.wait_for_state("s.notice?.problem");
         assert!(state["notice"]["problem"].as_str().is_some_and(|t| t.contains("memory")), "{state}");
         assert_eq!((&state["mesh"], &state["points"]), (&json!("cup"), &json!(1000)));
-        // The new worker has the old one's points, and makes others.
+        // The new workers have the old one's points, and make others.
         chrome.click("Take away");
         chrome.click("Points, CSV");
         let taken = chrome.downloaded("cup-points.csv");

@@ -230,7 +230,9 @@ impl Model {
         if self.mesh.is_none() || self.loading.is_some() {
             return;
         }
-        for slot in self.slots() {
+        // Each goes before all that waits, so A goes last to be first.
+        let slots: Vec<Slot> = self.slots().collect();
+        for slot in slots.into_iter().rev() {
             let wanted = &self.settings[slot.index()];
             if self.wrapped[slot.index()].as_ref() != Some(wanted) {
                 self.wrapped[slot.index()] = Some(wanted.clone());
@@ -609,6 +611,20 @@ mod tests {
         model.settle();
         office.work(&mut model);
         assert_eq!(model.runs[0].as_ref().unwrap().points.len(), 1000);
+    }
+
+    #[test]
+    fn of_two_methods_the_first_is_shown_first() {
+        let other = Some(Settings { method: Method::Hilbert, ..Settings::default() });
+        let mut model = Model::open(Some(Link { shape: "cube".into(), other, ..Link::default() }));
+        let mut engine = Engine::default();
+        for _ in 0..2 {
+            for (desk, job) in model.take_jobs() {
+                assert_eq!(desk, Desk::Maker);
+                model.receive(engine.handle(job, &Silent, &|| 0.0));
+            }
+        }
+        assert!(model.runs[0].is_some() && model.runs[1].is_none());
     }
 
     #[test]

@@ -126,6 +126,10 @@ fn arrows(input: &egui::InputState) -> Vec2 {
 
 /// Lets a view that has the focus take the arrows.
 pub(super) fn take_arrows(ui: &egui::Ui, view: &egui::Response) {
+    if view.gained_focus() || view.clicked() {
+        // Only from its second frame on can a view keep the arrows; that frame must not wait for an arrow.
+        ui.ctx().request_repaint();
+    }
     if view.has_focus() {
         let filter =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };

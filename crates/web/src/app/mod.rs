@@ -238,7 +238,9 @@ impl App {
             egui::ScrollArea::vertical().show(ui, |ui| {
                 let width = ui.available_width();
                 for surface in [true, false] {
-                    let height = if surface { 0.9 * width } else { 0.7 * width };
+                    // A view never fills the screen: there must be room to scroll past it.
+                    let most = 0.72 * ui.ctx().content_rect().height();
+                    let height = (if surface { 0.9 * width } else { 0.7 * width }).min(most);
                     let (rect, _) = ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::empty());
                     if surface {
                         self.surface_views(ui, rect, frame);
