@@ -38,7 +38,7 @@ fn half_of_a_centrally_symmetric_convex_body_is_seen_from_afar() {
         }
         assert!(perspective.iter().all(|&share| share > 0.0 && share < 0.5 + 1e-12));
         // Nothing of a convex body is hidden: the visible area is exact.
-        assert_eq!(views.measure(&body, &[]).reference_error, 0.0);
+        assert_eq!(views.measure(&body, &[], &Silent).reference_error, 0.0);
     }
 }
 
@@ -86,13 +86,15 @@ fn the_reference_error_is_what_it_says() {
     let fine = Views::new(&body, &options(60, 60_000), &Silent);
     let errors = rough.visible_areas().zip(fine.visible_areas()).map(|(a, b)| a - b);
     let actual = root_mean_square(errors);
-    let (stated, fine_stated) =
-        (rough.measure(&body, &[]).reference_error, fine.measure(&body, &[]).reference_error);
+    let (stated, fine_stated) = (
+        rough.measure(&body, &[], &Silent).reference_error,
+        fine.measure(&body, &[], &Silent).reference_error,
+    );
     assert!(actual > 0.6 * stated && actual < 1.6 * stated, "{actual} {stated}");
     assert!(fine_stated < 0.2 * stated);
     // And a finer reference changes what is measured by no more than it says.
     let points = random(&body, 200, 1);
-    let (a, b) = (rough.measure(&body, &points), fine.measure(&body, &points));
+    let (a, b) = (rough.measure(&body, &points, &Silent), fine.measure(&body, &points, &Silent));
     assert!(a.reference_error < 0.1 * a.view.l2);
     assert!((a.view.l2 / b.view.l2 - 1.0).abs() < 0.02, "{a:?} {b:?}");
     assert!((a.view_occluded.l2 / b.view_occluded.l2 - 1.0).abs() < 0.02);
@@ -104,7 +106,7 @@ fn random_points_measure_as_random() {
     let views = Views::new(&body, &options(64, 20_000), &Silent);
     let (mut plain, mut occluded) = (0.0, 0.0);
     for seed in 0..60 {
-        let report = views.measure(&body, &random(&body, 100, seed));
+        let report = views.measure(&body, &random(&body, 100, seed), &Silent);
         plain += report.view.mc * report.view.mc / 60.0;
         occluded += report.view_occluded.mc * report.view_occluded.mc / 60.0;
     }
@@ -118,10 +120,10 @@ fn better_points_measure_better_and_clumped_ones_worse() {
     let ball = mesh(&shapes::uv_sphere(40, 40));
     let views = Views::new(&ball, &options(64, 20_000), &Silent);
     let fibonacci = Baseline::SphereFibonacci.place(&ball, 500, 0).expect("a sphere");
-    assert!(views.measure(&ball, &fibonacci).view.mc < 0.2);
-    assert!(views.measure(&ball, &fibonacci).view_occluded.mc < 0.35);
+    assert!(views.measure(&ball, &fibonacci, &Silent).view.mc < 0.2);
+    assert!(views.measure(&ball, &fibonacci, &Silent).view_occluded.mc < 0.35);
     let clumped = vec![fibonacci[3]; 500];
-    let report = views.measure(&ball, &clumped);
+    let report = views.measure(&ball, &clumped, &Silent);
     // A single place is seen in whole or not at all.
     assert!(report.view.mc > 15.0 && report.view.linf > 0.4, "{report:?}");
 }
