@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use ldwrap::measure::Norms;
+use ldwrap::measure::{ComponentShare, Norms, components};
 use serde::Serialize;
 
 use crate::args::MeasureArgs;
@@ -22,6 +22,8 @@ struct MeasureReport<'a> {
     points: PointsReport,
     #[serde(flatten)]
     quality: Quality,
+    /// Of each connected part of the mesh.
+    component_shares: Vec<ComponentShare>,
     seconds: Seconds,
 }
 
@@ -61,6 +63,7 @@ pub(crate) fn run(args: &MeasureArgs, quiet: bool) -> Outcome {
         mesh: MeshReport::new(&mesh, &repaired),
         points: PointsReport { count: placed.points.len(), off_surface: placed.off_surface },
         quality,
+        component_shares: components(&mesh, &placed.points).components,
         seconds,
     };
     if args.json {

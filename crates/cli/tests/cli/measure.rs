@@ -44,6 +44,8 @@ fn the_json_has_its_keys() {
             assert!(report[key][name].is_number(), "{key}.{name}: {}", report[key]);
         }
     }
+    assert_eq!(report["component_shares"][0]["points"], 64);
+    assert!((number(&report["component_shares"][0]["expected"]) - 64.0).abs() < 1e-9);
     assert_eq!(report["points"]["count"], 64);
     assert_eq!(report["points"]["off_surface"]["count"], 0);
     assert_eq!(report["mesh"]["faces"], 8);
@@ -154,6 +156,23 @@ fn bad_points() {
     }
     folder.run("measure - -").refused(&["stdin"]);
     folder.run("measure square.obj").refused(&["POINTS"]);
+}
+
+/// NumPy's format with these numbers, 3 a row.
+fn npy(kind: &str, rows: usize, numbers: &[u8]) -> Vec<u8> {
+    let head = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({rows}, 3), }}\n");
+    let length = (head.len() as u16).to_le_bytes();
+    [b"\x93NUMPY\x01\0", &length[..], head.as_bytes(), numbers].concat()
+}
+
+#[test]
+fn npy_of_other_numbers_is_read_or_refused_in_words() {
+    let folder = folder();
+    let single: Vec<u8> = [1.0f32, 0.5, 0.0].iter().flat_map(|x| x.to_be_bytes()).collect();
+    folder.write("single.npy", npy(">f4", 1, &single));
+    assert_eq!(folder.run("measure square.obj single.npy --json -q").ok().json()["points"]["count"], 1);
+    folder.write("words.npy", npy("<U4", 1, &[0; 48]));
+    folder.run("measure square.obj words.npy").failed(&["words.npy", "npy", "numbers are"]);
 }
 
 #[test]

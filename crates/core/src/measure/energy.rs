@@ -320,6 +320,22 @@ mod tests {
     }
 
     #[test]
+    fn halving_the_error_changes_nothing_that_is_measured() {
+        let mesh = testmesh::sphere(12);
+        let points = random_points(&mesh, 300, 2);
+        let rough = measure(&mesh, &points);
+        let options = EnergyOptions { tolerance: 0.5 * rough.relative_error, work: 1e9 };
+        let fine = energy(&mesh, &points, &options, &Silent);
+        assert!(fine.relative_error < 0.6 * rough.relative_error, "{rough:?} {fine:?}");
+        assert!((fine.discrepancy / rough.discrepancy - 1.0).abs() < 4.0 * rough.relative_error);
+        assert!((fine.mean_distance / rough.mean_distance - 1.0).abs() < 4.0 * rough.mean_distance_error);
+        // More planes across a direction than are taken for this many points.
+        let more = EnergyPlanes::new(&mesh, 100_000, &EnergyOptions::default(), &Silent);
+        let more = more.measure(&mesh, &points, &Silent);
+        assert!((more.discrepancy / rough.discrepancy - 1.0).abs() < rough.relative_error, "{more:?}");
+    }
+
+    #[test]
     fn spherical_fibonacci_reaches_the_floor() {
         let mesh = testmesh::sphere(40);
         let points = testmesh::project(&mesh, &testmesh::fibonacci(770));

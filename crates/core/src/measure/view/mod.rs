@@ -40,12 +40,12 @@ impl Default for ViewOptions {
 }
 
 impl ViewOptions {
-    /// The default, with as many nodes as sets of up to `count` points need: 64 a point up to 400,000 in all, beyond
-    /// 10,000 points 40 a point, and never fewer than 40,000 nor more than 4,000,000. Errors of points and of nodes
-    /// fall alike with their number, so up to 100,000 points the reference error stays the same part of what the
-    /// best sets measure; for more points its part grows, and [`ViewReport::reference_error`] says so.
+    /// The default, with as many nodes as sets of up to `count` points need for a reference error of a tenth of what
+    /// the best of them measure: 128 a point up to 800,000 in all, at least 40 a point, and never fewer than 64,000 nor
+    /// more than 4,000,000 (128 MB). Errors of points and of nodes fall alike with their number, so that holds up to
+    /// 100,000 points; beyond, [`ViewReport::is_sharp`] says whether it does.
     pub fn for_count(count: usize) -> Self {
-        let few = count.saturating_mul(64).clamp(40_000, 400_000);
+        let few = count.saturating_mul(128).clamp(64_000, 800_000);
         let many = count.saturating_mul(40).min(4_000_000);
         Self { nodes: few.max(many), ..Self::default() }
     }

@@ -101,6 +101,25 @@ fn the_reference_error_is_what_it_says() {
 }
 
 #[test]
+fn more_points_get_more_nodes_within_bounds() {
+    let nodes = |count| ViewOptions::for_count(count).nodes;
+    assert_eq!([0, 1, 1000, 10_000].map(nodes), [64_000, 64_000, 128_000, 800_000]);
+    assert_eq!([50_000, 100_000, usize::MAX].map(nodes), [2_000_000, 4_000_000, 4_000_000]);
+    let counts = (0..60).map(|k| 1usize << (k / 2) | 1 << (k / 3));
+    assert!(counts.clone().zip(counts.skip(1)).all(|(a, b)| a > b || nodes(a) <= nodes(b)));
+}
+
+#[test]
+fn a_blunt_reference_is_told() {
+    let body = mesh(&shapes::torus(30, 15, 0.4));
+    let points = hilbert(&body, 4000, 0);
+    let sharp =
+        |nodes| Views::new(&body, &options(32, nodes), &Silent).measure(&body, &points, &Silent).is_sharp();
+    assert_eq!(sharp(500), [false, false]);
+    assert_eq!(sharp(400_000), [true, true]);
+}
+
+#[test]
 fn random_points_measure_as_random() {
     let body = mesh(&shapes::torus(40, 20, 0.4));
     let views = Views::new(&body, &options(64, 20_000), &Silent);
