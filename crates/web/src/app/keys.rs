@@ -131,6 +131,10 @@ pub(super) fn take_arrows(ui: &egui::Ui, view: &egui::Response) {
         ui.ctx().request_repaint();
     }
     if view.has_focus() {
+        // An arrow that came before the filter held would still move the focus.
+        if ui.input(arrows) != Vec2::ZERO {
+            ui.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
+        }
         let filter =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|m| m.set_focus_lock_filter(view.id, filter));
