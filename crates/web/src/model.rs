@@ -241,6 +241,10 @@ impl Model {
                     self.cancels.push(Desk::Maker);
                 }
                 self.queue.push_front(Job::Wrap(slot, wanted.clone()));
+                // Equalizing takes most of the time: where nothing is shown yet, what it starts from is shown first.
+                if self.runs[slot.index()].is_none() && wanted.equalizes() {
+                    self.queue.push_front(Job::Wrap(slot, Settings { equalize: false, ..wanted.clone() }));
+                }
             }
         }
     }
@@ -278,7 +282,8 @@ impl Model {
             jobs.push((Desk::Maker, job));
         }
         if self.judging == Judging::Idle
-            && let Some(job) = self.judge_queue.pop_front()
+            && let Some(job) =
+                self.judge_queue.pop_front_if(|job| !is_replaced(job, &self.queue, &self.in_hand))
         {
             self.judging = match job {
                 Job::Judge(slot, measure) => Judging::Measures(slot, measure),
@@ -541,6 +546,12 @@ impl Model {
     }
 }
 
+/// Whether a job for the judge is about points that the maker's jobs will replace.
+fn is_replaced(job: &Job, queue: &VecDeque<Job>, in_hand: &Option<Job>) -> bool {
+    let (Job::Judge(slot, _) | Job::Place(slot, _)) = job else { return false };
+    queue.iter().chain(in_hand).any(|waiting| matches!(waiting, Job::Wrap(replaced, _) if replaced == slot))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -602,7 +613,7 @@ mod tests {
     fn a_broken_file_is_told_and_the_old_mesh_stays() {
         let (mut model, mut office) = (Model::open(None), Office::new());
         office.work(&mut model);
-        model.load(Source::File { name: "broken.ply".into(), bytes: b"no mesh".to_vec() });
+        model.load(Source::alone("broken.ply".into(), b"no mesh".to_vec()));
         office.work(&mut model);
         assert!(matches!(&model.notice, Some(Notice::Problem(text)) if text.contains("broken.ply")));
         assert_eq!(model.mesh.as_ref().unwrap().name, "cup");
@@ -625,6 +636,49 @@ mod tests {
             }
         }
         assert!(model.runs[0].is_some() && model.runs[1].is_none());
+    }
+
+    #[test]
+    fn points_are_shown_before_they_are_equalized_and_measured_after() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        let mut shown = Vec::new();
+        for _ in 0..3 {
+            for (desk, job) in model.take_jobs() {
+                match desk {
+                    Desk::Maker => model.receive(office.maker.handle(job, &Silent, &|| 0.0)),
+                    Desk::Judge => {
+                        assert!(matches!(job, Job::Load(_)), "points that are replaced were measured");
+                        model.receive_verdict(office.judge.handle(job, &Silent, &|| 0.0));
+                    }
+                    Desk::Looker => model.receive_look(office.looker.handle(job, &Silent, &|| 0.0)),
+                }
+            }
+            shown.push((model.runs[0].as_ref().map(|run| run.points.len()), model.is_busy()));
+        }
+        assert_eq!(shown, [(None, true), (Some(1000), true), (Some(1000), false)]);
+        office.work(&mut model);
+        assert_eq!(model.verdicts[0].len(), Measure::ALL.len());
+    }
+
+    #[test]
+    fn what_is_shown_when_the_person_stops_is_measured() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        for _ in 0..3 {
+            for (desk, job) in model.take_jobs() {
+                match desk {
+                    Desk::Maker if model.runs[0].is_some() => {
+                        model.cancel();
+                        model.receive(Answer::Cancelled);
+                    }
+                    Desk::Maker => model.receive(office.maker.handle(job, &Silent, &|| 0.0)),
+                    Desk::Judge => model.receive_verdict(office.judge.handle(job, &Silent, &|| 0.0)),
+                    Desk::Looker => model.receive_look(office.looker.handle(job, &Silent, &|| 0.0)),
+                }
+            }
+        }
+        assert!(!model.is_busy() && model.notice.is_some());
+        office.work(&mut model);
+        assert_eq!(model.verdicts[0].len(), Measure::ALL.len());
     }
 
     #[test]

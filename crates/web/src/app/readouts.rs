@@ -12,14 +12,15 @@ pub(super) fn show(ui: &mut egui::Ui, model: &mut Model, frame: f64) {
     ui.heading("What this view sees");
     view(ui, model);
     ui.separator();
+    // Near the top: what is pointed at must be read without scrolling.
+    ui.heading("Under the pointer");
+    pointer(ui, model);
+    ui.separator();
     ui.heading("This mesh");
     mesh(ui, model);
     ui.separator();
     ui.heading("Measures");
     measures(ui, model);
-    ui.separator();
-    ui.heading("Under the pointer");
-    pointer(ui, model);
     ui.separator();
     ui.label(RichText::new(format!("{frame:.0} ms a frame while moving")).weak());
 }
