@@ -133,6 +133,15 @@ fn it_opens_wrapped_and_shows_itself_in_light_dark_and_on_a_phone() {
             let status = chrome.evaluate("document.getElementById('status').textContent");
             assert!(status.as_str().is_some_and(|s| s.contains("1000 points")), "{status}");
             keep_picture(chrome, name);
+            let mute = chrome.evaluate(
+                "[...document.querySelectorAll('#mirror > div')].filter(e => !e.ariaLabel.trim()).map(e => e.outerHTML)",
+            );
+            assert_eq!(mute, json!([]), "controls without a name");
+            for number in ["Number of points", "Flatness angle", "Tolerance"] {
+                let find =
+                    format!("document.querySelector('#mirror > [role=spinbutton][aria-label=\"{number}\"]')");
+                chrome.wait_for(&find);
+            }
         });
     }
 }
@@ -245,7 +254,7 @@ fn two_methods_are_compared_behind_an_obstacle() {
         for control in ["irregular band", "local surplus"] {
             chrome.activate(control);
         }
-        chrome.wait_for_state("s.verdicts === 7");
+        chrome.wait_for_state("s.verdicts === 7 && s.verdictsOfB === 7");
         keep_picture(chrome, "page-compare.png");
         chrome.activate("in the domain");
         chrome.activate("wireframe");

@@ -81,6 +81,9 @@ pub type TrailStep = [Option<f64>; 2];
 /// A file's name and bytes.
 pub type NamedFile = (String, Vec<u8>);
 
+/// The largest sample figure that the page offers.
+pub const MOST_RINGS: u32 = 60;
+
 /// How many views the trail remembers.
 const TRAIL: usize = 160;
 
@@ -241,8 +244,8 @@ impl Model {
                     self.cancels.push(Desk::Maker);
                 }
                 self.queue.push_front(Job::Wrap(slot, wanted.clone()));
-                // Equalizing takes most of the time: where nothing is shown yet, what it starts from is shown first.
-                if self.runs[slot.index()].is_none() && wanted.equalizes() {
+                // Equalizing takes most of the time: while nothing is shown yet, what it starts from is shown first.
+                if slot == Slot::A && self.runs[0].is_none() && wanted.equalizes() {
                     self.queue.push_front(Job::Wrap(slot, Settings { equalize: false, ..wanted.clone() }));
                 }
             }
@@ -386,6 +389,7 @@ impl Model {
         self.unseen = self.source.clone();
         self.stop_judging(|_| true);
         self.orbit = Orbit::around(mesh.centre, mesh.radius, mesh.up.0);
+        self.rings = rings_for(mesh.report.faces);
         self.plane = None;
         self.runs = [None, None];
         self.verdicts = [Vec::new(), Vec::new()];
@@ -530,6 +534,7 @@ impl Model {
             "look": self.look.map(|l| json!({"surface": l.surface, "points": l.points})),
             "trail": self.trail.len(),
             "verdicts": self.verdicts[0].len(),
+            "verdictsOfB": self.verdicts[1].len(),
             "up": self.orbit.up,
             "obstacle": self.occluder.map(|o| [o.low, o.high]),
             "plane": self.plane.map(|p| json!({"centre": p.centre, "halfHeight": p.half_height})),
@@ -544,6 +549,11 @@ impl Model {
             "status": self.status(),
         })
     }
+}
+
+/// How many rings make a sample figure that can be seen: about a thirtieth of the triangles.
+fn rings_for(faces: usize) -> u32 {
+    ((0.02 * faces as f64).sqrt().round() as u32).clamp(2, MOST_RINGS)
 }
 
 /// Whether a job for the judge is about points that the maker's jobs will replace.
@@ -701,6 +711,7 @@ mod tests {
         let figure = model.figure.as_ref().unwrap();
         assert_eq!(figure.seed, model.runs[0].as_ref().unwrap().points[0].face);
         assert!(figure.degree >= 1);
+        assert!((0.005..0.1).contains(&figure.area_share), "too small to be seen: {}", figure.area_share);
         assert!(!model.describe(model.pinned.unwrap()).is_empty());
         model.pin(None);
         assert!(model.figure.is_none());

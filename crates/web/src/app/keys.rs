@@ -4,7 +4,7 @@ use eframe::egui::{self, Key};
 use glam::Vec2;
 
 use crate::camera::{PlaneView, Up};
-use crate::model::{Colouring, Model};
+use crate::model::{Colouring, MOST_RINGS, Model};
 use crate::scene::Layout;
 
 /// What a key does, for the list that a person can open.
@@ -57,7 +57,7 @@ pub(super) fn handle(ctx: &egui::Context, model: &mut Model) {
         model.rings -= 1;
         model.grow();
     }
-    if pressed(Key::CloseBracket) {
+    if pressed(Key::CloseBracket) && model.rings < MOST_RINGS {
         model.rings += 1;
         model.grow();
     }

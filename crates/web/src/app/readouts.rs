@@ -4,6 +4,7 @@ use eframe::egui::{self, Color32, RichText, Stroke, pos2, vec2};
 use egui::accesskit::Role;
 
 use super::theme;
+use crate::judge::Measure;
 use crate::model::Model;
 
 /// Shows all numbers. `frame` is the time that a frame takes, in milliseconds.
@@ -125,8 +126,11 @@ fn mesh(ui: &mut egui::Ui, model: &Model) {
 
 fn measures(ui: &mut egui::Ui, model: &Model) {
     ui.label(RichText::new("error, where 1 is that of random points").weak());
-    for slot in model.slots() {
-        for (measure, verdict) in &model.verdicts[slot.index()] {
+    // A and B next to each other, measure by measure.
+    for measure in Measure::ALL {
+        for slot in model.slots() {
+            let mut verdicts = model.verdicts[slot.index()].iter();
+            let Some((_, verdict)) = verdicts.find(|(of, _)| *of == measure) else { continue };
             let name = if model.comparing {
                 format!("{} {}", slot.name(), measure.name())
             } else {
