@@ -298,7 +298,7 @@ pub(crate) struct CompareArgs {
     pub(crate) mesh: MeshArgs,
     /// How many points, one table row a method for each
     #[arg(short = 'n', long = "count", value_name = "N,...", value_delimiter = ',', default_value = "56,335,1000",
-        value_parser = clap::value_parser!(u32).range(1..))]
+        value_parser = clap::value_parser!(u32).range(1..=MOST_COMPARED_POINTS))]
     pub(crate) counts: Vec<u32>,
     /// The methods [default: all that work on the mesh]
     #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
@@ -320,6 +320,9 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "OUT.svg")]
     pub(crate) plot: Option<PathBuf>,
 }
+
+/// Every set is kept until all are measured: ten million points of seven methods take some 2 GB.
+const MOST_COMPARED_POINTS: i64 = 10_000_000;
 
 /// A point file and what it is called.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -418,7 +421,7 @@ pub(crate) struct BoundArgs {
     pub(crate) mesh: MeshArgs,
     /// How many points, one table row for each
     #[arg(short = 'n', long = "count", value_name = "N,...", value_delimiter = ',', default_value = "56,335,1000",
-        value_parser = clap::value_parser!(u32).range(1..))]
+        value_parser = clap::value_parser!(u32).range(1..=MOST_COMPARED_POINTS))]
     pub(crate) counts: Vec<u32>,
     #[command(flatten)]
     pub(crate) sequence: SequenceArgs,

@@ -1,5 +1,6 @@
 //! What is to be done: the command line, checked.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
 use ldwrap::equalize::EqualizeOptions;
@@ -139,6 +140,17 @@ pub(crate) fn sequence(args: &SequenceArgs) -> Outcome<(Sequence, u64)> {
     };
     sequence.validate().map_err(|error| Failure::wrong_use(format!("--bases: {error}")))?;
     Ok((sequence, seed))
+}
+
+/// `count` seeds from `first` on; at least one.
+pub(crate) fn seeds(first: u64, count: u32) -> Outcome<RangeInclusive<u64>> {
+    match first.checked_add(u64::from(count.saturating_sub(1))) {
+        Some(last) => Ok(first..=last),
+        None => Err(Failure::wrong_use(format!(
+            "--seeds: {count} seeds from {first} on go beyond the largest, {}: take a smaller --seed",
+            u64::MAX
+        ))),
+    }
 }
 
 /// Refuses a value that is given a second time; `name` makes it readable.
