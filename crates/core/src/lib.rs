@@ -53,6 +53,7 @@
 
 pub mod baseline;
 pub mod correct;
+pub mod density;
 pub mod domain;
 pub mod equalize;
 pub mod geometry;
