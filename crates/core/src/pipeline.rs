@@ -1,6 +1,7 @@
 //! Chains the stages and keeps every value; no logic of its own.
 
 use crate::correct::Correction;
+use crate::density::Density;
 use crate::domain::PlanarDomain;
 use crate::equalize::{EqualizeOptions, EqualizeReport, equalize};
 use crate::irregularity::{Irregularity, irregularity};
@@ -148,7 +149,7 @@ fn equalize_samples(
 ) -> (Vec<Sample>, EqualizeReport) {
     let points: Vec<_> = samples.iter().map(|s| s.point).collect();
     let strip_of_face: Vec<_> = strips.places.iter().map(|p| p.strip).collect();
-    let equalized = equalize(mesh, &points, &strip_of_face, options, progress);
+    let equalized = equalize(mesh, &points, &strip_of_face, &Density::UNIFORM, options, progress);
     let samples = equalized.points.into_iter().zip(samples).map(|(point, before)| {
         let (strip, place) = strips.lay_point(&point);
         // What the correction moved stays known: equalizing keeps the order of the points.
