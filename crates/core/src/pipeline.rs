@@ -6,7 +6,7 @@ use crate::equalize::{EqualizeOptions, EqualizeReport, equalize};
 use crate::irregularity::{Irregularity, irregularity};
 use crate::mesh::SurfaceMesh;
 use crate::progress::Progress;
-use crate::request::{MOST_DOMAIN_POINTS, Scattered, Scattering};
+use crate::request::{Scattered, Scattering};
 use crate::sample::{Origin, Sample};
 use crate::segment::{SegmentOptions, Segmentation, segment};
 use crate::sequence::{self, Sequence, SequenceError};
@@ -82,10 +82,8 @@ pub enum OptionsError {
     /// The sequence does not exist.
     #[error(transparent)]
     Sequence(#[from] SequenceError),
-    /// More points of the planar domain would be needed than can be numbered.
-    #[error(
-        "{wanted:.3e} points of the planar domain are needed, at most {MOST_DOMAIN_POINTS} can be: ask for fewer points"
-    )]
+    /// More points of the planar domain would be needed than memory is spent on.
+    #[error("{wanted:.3e} points of the planar domain are needed, which is too many: ask for fewer points")]
     TooMany {
         /// How many.
         wanted: f64,

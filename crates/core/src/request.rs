@@ -4,18 +4,14 @@
 use glam::DVec2;
 
 use crate::correct::{Corrected, Correction, correct};
-use crate::domain::{DomainPoints, PlanarDomain};
+use crate::domain::{DomainPoints, PlanarDomain, TooManyCells};
 use crate::irregularity;
 use crate::mesh::SurfaceMesh;
 use crate::pipeline::OptionsError;
-use crate::sample::Sample;
+use crate::sample::{Origin, Sample};
 use crate::sequence::Sequence;
 use crate::unfold::Strips;
 use crate::wrap::wrap;
-
-/// The most points that the planar domain can hold: they are numbered by 32 bits, and 2^30 of them take 20 GiB.
-/// Where memory has 32-bit addresses, 2^25 are what fits.
-pub(crate) const MOST_DOMAIN_POINTS: u32 = if usize::BITS < 64 { 1 << 25 } else { 1 << 30 };
 
 /// How many points are wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,23 +69,23 @@ impl Scattering<'_> {
     }
 
     /// How many points of the domain give `n` on the surface where it is covered once.
-    fn domain_count(&self, n: f64) -> Result<u32, OptionsError> {
-        let wanted = (n * self.domain.room(self.mesh.area())).round().max(1.0);
-        if wanted > f64::from(MOST_DOMAIN_POINTS) {
-            return Err(OptionsError::TooMany { wanted });
-        }
-        Ok(wanted as u32)
+    fn domain_count(&self, n: f64) -> u64 {
+        // The cast saturates.
+        (n * self.domain.room(self.mesh.area())).round().max(1.0) as u64
     }
 
-    fn scatter(&self, count: u32, d_m: f64) -> (Vec<Corrected>, Correction) {
-        let points = DomainPoints::scatter(self.domain, &self.sequence, count, self.shift);
+    fn scatter(&self, count: u64, d_m: f64) -> Result<(Vec<Corrected>, Correction), OptionsError> {
+        let reach = self.tolerance * d_m;
+        let points =
+            DomainPoints::scatter_near(self.domain, self.strips, &self.sequence, count, self.shift, reach)
+                .map_err(|TooManyCells| OptionsError::TooMany { wanted: count as f64 })?;
         let wrapping = wrap(self.strips, self.domain, &points);
-        correct(self.mesh, self.strips, self.domain, &points, wrapping, self.tolerance * d_m)
+        Ok(correct(self.mesh, self.strips, self.domain, &points, wrapping, reach))
     }
 
     fn at_spacing(&self, d_m: f64) -> Result<Scattered, OptionsError> {
-        let count = self.domain_count(self.mesh.area() / (d_m * d_m))?;
-        let (corrected, correction) = self.scatter(count, d_m);
+        let count = self.domain_count(self.mesh.area() / (d_m * d_m));
+        let (corrected, correction) = self.scatter(count, d_m)?;
         Ok(Scattered { samples: corrected.into_iter().map(|c| c.sample).collect(), correction, d_m })
     }
 
@@ -121,54 +117,56 @@ impl Scattering<'_> {
     /// tried; where none gives `n`, the surplus of the best is left out, evenly along the sequence.
     fn exactly(&self, n: usize) -> Result<Scattered, OptionsError> {
         let d_m = libm::sqrt(self.mesh.area() / n as f64);
-        let nominal = self.domain_count(n as f64)?;
-        // A trial costs about the faces and the points; many are cheap when both are few.
-        let cost = self.mesh.face_count() / 4 + nominal as usize;
-        let trials = (2_000_000 / cost.max(1)).clamp(2, 24);
-        let mut best: Option<(Vec<Corrected>, Correction)> = None;
+        let nominal = self.domain_count(n as f64);
+        // A trial costs about the faces and the points near them; many are cheap when both are few.
+        let cost = (self.mesh.face_count() / 4) as u64 + nominal.min(16 * n as u64);
+        let trials = (2_000_000 / cost.max(1)).clamp(2, 24) as usize;
+        let mut best: Option<Vec<Corrected>> = None;
         let mut tried = Vec::new();
         let mut count = nominal;
         loop {
             tried.push(count);
-            let (corrected, correction) = self.scatter(count, d_m);
+            let (corrected, _) = self.scatter(count, d_m)?;
             let found = corrected.len();
-            let better = best.as_ref().is_none_or(|(b, _)| found < b.len());
+            let better = best.as_ref().is_none_or(|b| found < b.len());
             if found >= n && better {
-                best = Some((corrected, correction));
+                best = Some(corrected);
             }
             if found == n || (tried.len() >= trials && best.is_some()) {
                 break;
             }
-            count = self.next_count(count, n, found, &tried)?;
+            count = if tried.len() < trials {
+                self.next_count(count, n, found, &tried)
+            } else {
+                // Points that the steps do not bring: doubling ends, with enough points or with too many.
+                tried.iter().copied().max().unwrap_or(1).saturating_mul(2)
+            };
         }
-        let (corrected, mut correction) = best.unwrap_or_default();
-        let samples = thin_out(corrected, n);
-        correction.projected =
-            samples.iter().filter(|s| s.origin == crate::sample::Origin::Projected).count();
-        Ok(Scattered { samples, correction, d_m })
+        let kept = thin_out(best.unwrap_or_default(), n);
+        let correction = Correction {
+            projected: kept.iter().filter(|c| c.sample.origin == Origin::Projected).count(),
+            removed: kept.iter().map(|c| c.copies_removed as usize).sum(),
+        };
+        Ok(Scattered { samples: kept.into_iter().map(|c| c.sample).collect(), correction, d_m })
     }
 
     /// The next number of domain points to try: by as many more as points are missing, and not one tried before.
-    fn next_count(&self, count: u32, n: usize, found: usize, tried: &[u32]) -> Result<u32, OptionsError> {
+    fn next_count(&self, count: u64, n: usize, found: usize, tried: &[u64]) -> u64 {
         let room = self.domain.room(self.mesh.area()).max(1.0);
         let step = (n as f64 - found as f64) * room;
-        let mut next = (f64::from(count) + step).round().max(1.0);
-        let direction = if found < n { 1.0 } else { -1.0 };
-        while tried.contains(&(next as u32)) {
-            next += direction;
-            if next < 1.0 {
-                next = f64::from(tried.iter().copied().max().unwrap_or(0)) + 1.0;
+        let mut next = (count as f64 + step).round().max(1.0) as u64;
+        while tried.contains(&next) {
+            next = if found < n { next.saturating_add(1) } else { next - 1 };
+            if next < 1 {
+                next = tried.iter().copied().max().unwrap_or(0).saturating_add(1);
             }
         }
-        if next > f64::from(MOST_DOMAIN_POINTS) {
-            return Err(OptionsError::TooMany { wanted: next });
-        }
-        Ok(next as u32)
+        next
     }
 }
 
 /// Leaves out points, evenly along the sequence, until `n` are left.
-fn thin_out(corrected: Vec<Corrected>, n: usize) -> Vec<Sample> {
+fn thin_out(corrected: Vec<Corrected>, n: usize) -> Vec<Corrected> {
     let count = corrected.len();
     let surplus = count.saturating_sub(n);
     // In 64 bits also where indices have 32.
@@ -179,6 +177,6 @@ fn thin_out(corrected: Vec<Corrected>, n: usize) -> Vec<Sample> {
         .into_iter()
         .enumerate()
         .filter(|&(i, _)| left_out.next_if_eq(&i).is_none())
-        .map(|(_, c)| c.sample)
+        .map(|(_, c)| c)
         .collect()
 }

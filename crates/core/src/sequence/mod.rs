@@ -4,6 +4,7 @@
 //! 1), and has the same bits on every platform. An index is any `u64`.
 
 mod fibonacci;
+mod finder;
 mod fraction;
 mod halton;
 mod hammersley;
@@ -15,6 +16,7 @@ mod sobol;
 
 use glam::DVec2;
 
+pub(crate) use finder::Finder;
 pub use radical_inverse::radical_inverse;
 pub use shift::{shift, shift_of_seed};
 
@@ -47,6 +49,9 @@ pub enum Sequence {
     Fibonacci,
 }
 
+/// The largest base that [`Sequence::validate`] allows: fewer points than the base lie on one line.
+pub const LARGEST_BASE: u32 = 1024;
+
 impl Default for Sequence {
     fn default() -> Self {
         Self::Hammersley { base: 2 }
@@ -60,6 +65,12 @@ pub enum SequenceError {
     /// A base that has no digits.
     #[error("base {base} of the sequence is too small: a base is at least 2")]
     SmallBase {
+        /// The base.
+        base: u32,
+    },
+    /// A base so large that a set of a useful number of points would lie on a few lines.
+    #[error("base {base} of the sequence is too large: at most {LARGEST_BASE} can be used")]
+    LargeBase {
         /// The base.
         base: u32,
     },
@@ -98,13 +109,13 @@ impl Sequence {
     /// Checks the bases.
     ///
     /// # Errors
-    /// [`SequenceError`] when a base is below 2 or the bases have a common factor.
+    /// [`SequenceError`] when a base is below 2 or above [`LARGEST_BASE`], or the bases have a common factor.
     pub fn validate(&self) -> Result<(), SequenceError> {
         match *self {
-            Self::Hammersley { base } => at_least_two(base),
+            Self::Hammersley { base } => check_base(base),
             Self::Halton { bases } => {
-                at_least_two(bases[0])?;
-                at_least_two(bases[1])?;
+                check_base(bases[0])?;
+                check_base(bases[1])?;
                 match greatest_common_divisor(bases[0], bases[1]) {
                     1 => Ok(()),
                     factor => Err(SequenceError::SharedFactor { bases, factor }),
@@ -115,8 +126,12 @@ impl Sequence {
     }
 }
 
-fn at_least_two(base: u32) -> Result<(), SequenceError> {
-    if base < 2 { Err(SequenceError::SmallBase { base }) } else { Ok(()) }
+fn check_base(base: u32) -> Result<(), SequenceError> {
+    match base {
+        0 | 1 => Err(SequenceError::SmallBase { base }),
+        2..=LARGEST_BASE => Ok(()),
+        _ => Err(SequenceError::LargeBase { base }),
+    }
 }
 
 fn greatest_common_divisor(mut a: u32, mut b: u32) -> u32 {
@@ -213,6 +228,10 @@ mod tests {
             assert_eq!(Sequence::Halton { bases: [base, 3] }.validate(), refused);
             assert_eq!(Sequence::Halton { bases: [3, base] }.validate(), refused);
         }
+        assert_eq!(Sequence::Halton { bases: [1024, 3] }.validate(), Ok(()));
+        let refused = Err(SequenceError::LargeBase { base: 1025 });
+        assert_eq!(Sequence::Halton { bases: [2, 1025] }.validate(), refused);
+        assert_eq!(Sequence::Hammersley { base: 1025 }.validate(), refused);
         assert_eq!(
             Sequence::Halton { bases: [6, 15] }.validate(),
             Err(SequenceError::SharedFactor { bases: [6, 15], factor: 3 })
