@@ -1,8 +1,9 @@
 //! The report of a run as JSON. Its keys and units are documented in this crate's README and stay as they are.
 
+use ldwrap::density::Density;
 use ldwrap::equalize::EqualizeReport;
 use ldwrap::irregularity::Irregularity;
-use ldwrap::pipeline::{Options, Request, Run};
+use ldwrap::pipeline::{Options, Request, Run, SampleOrder, Selection};
 use ldwrap::segment::GrowthOrder;
 use ldwrap::sequence::Sequence;
 use ldwrap::unfold::Strip;
@@ -38,7 +39,11 @@ struct OptionsReport {
     flatness_angle: f64,
     smallest_share: f64,
     growth: GrowthOrder,
+    selection: Selection,
     equalize: bool,
+    order: SampleOrder,
+    /// Whether weights were given.
+    weighted: bool,
 }
 
 /// What a mesh is; `info --json` prints this.
@@ -73,6 +78,7 @@ impl<'a> Report<'a> {
     pub(crate) fn new(
         mesh: MeshReport<'a>,
         options: &Options,
+        density: &Density,
         run: &Run,
         quality: Option<Quality>,
         seconds: Seconds,
@@ -87,7 +93,10 @@ impl<'a> Report<'a> {
                 flatness_angle: degrees(options.segment.flatness_angle),
                 smallest_share: options.segment.smallest_share,
                 growth: options.segment.order,
+                selection: options.selection,
                 equalize: options.equalize.is_some(),
+                order: options.order,
+                weighted: !density.is_uniform(),
             },
             mesh,
             strips: run

@@ -126,6 +126,20 @@ impl Sequence {
     }
 }
 
+/// A third coordinate in [0, 1) for the point of an index: the radical inverse in a prime base that the other two do not
+/// use. Where only the points below a height are kept, that share of them stays, evenly spread.
+pub(crate) fn third_coordinate(sequence: &Sequence, index: u64) -> f64 {
+    let uses = |prime: u32| match *sequence {
+        Sequence::Hammersley { base } => base % prime == 0,
+        Sequence::Halton { bases } => bases.iter().any(|b| b % prime == 0),
+        Sequence::Sobol { .. } => prime == 2,
+        Sequence::R2 | Sequence::Fibonacci => false,
+    };
+    // Two bases without common factor, up to 1,024 each, have at most seven prime factors.
+    let prime = [2, 3, 5, 7, 11, 13, 17].into_iter().find(|p| !uses(*p)).unwrap_or(19);
+    radical_inverse(index, prime)
+}
+
 fn check_base(base: u32) -> Result<(), SequenceError> {
     match base {
         0 | 1 => Err(SequenceError::SmallBase { base }),
@@ -240,6 +254,17 @@ mod tests {
             SequenceError::SharedFactor { bases: [6, 15], factor: 3 }.to_string(),
             "bases 6 and 15 of the sequence share the factor 3: they must have none in common"
         );
+    }
+
+    #[test]
+    fn the_third_coordinate_uses_another_base() {
+        let third = |sequence| third_coordinate(&sequence, 1);
+        assert_eq!(third(Sequence::Hammersley { base: 2 }), 1.0 / 3.0);
+        assert_eq!(third(Sequence::Hammersley { base: 3 }), 0.5);
+        assert_eq!(third(Sequence::Halton { bases: [2, 3] }), 0.2);
+        assert_eq!(third(Sequence::Halton { bases: [770, 39] }), 1.0 / 17.0);
+        assert_eq!(third(Sequence::Sobol { seed: 1 }), 1.0 / 3.0);
+        assert_eq!(third(Sequence::R2), 0.5);
     }
 
     proptest! {
