@@ -131,7 +131,8 @@ pub(crate) fn segment_options(args: &SegmentArgs) -> SegmentOptions {
     }
 }
 
-fn sequence(args: &SequenceArgs) -> Outcome<(Sequence, u64)> {
+/// The sequence, and the seed that shifts it.
+pub(crate) fn sequence(args: &SequenceArgs) -> Outcome<(Sequence, u64)> {
     let (sequence, seed) = match (args.sequence, args.bases.as_deref()) {
         (SequenceArg::Hammersley, None) => (Sequence::Hammersley { base: 2 }, args.seed),
         (SequenceArg::Hammersley, Some(&[base])) => (Sequence::Hammersley { base }, args.seed),
@@ -153,4 +154,19 @@ fn sequence(args: &SequenceArgs) -> Outcome<(Sequence, u64)> {
     };
     sequence.validate().map_err(|error| Failure::wrong_use(format!("--bases: {error}")))?;
     Ok((sequence, seed))
+}
+
+/// Refuses a value that is given a second time; `name` makes it readable.
+pub(crate) fn refuse_repeated<T: PartialEq>(
+    option: &str,
+    values: &[T],
+    name: impl Fn(&T) -> String,
+) -> Outcome {
+    let repeated = values.iter().enumerate().find(|(i, value)| values[..*i].contains(value));
+    match repeated {
+        Some((_, value)) => {
+            Err(Failure::wrong_use(format!("{option}: {} is given twice: leave one out", name(value))))
+        }
+        None => Ok(()),
+    }
 }

@@ -1,6 +1,7 @@
 //! The program `ldwrap-cli`: meshes in, points, pictures and reports out.
 
 mod args;
+mod bound;
 mod commands;
 mod exit;
 mod input;
@@ -41,6 +42,8 @@ fn run(line: &CommandLine) -> Outcome {
         Command::Shape(args) => commands::shape::run(args, line.quiet),
         Command::Measure(args) => commands::measure::run(args, line.quiet),
         Command::Compare(args) => commands::compare::run(args, line.quiet),
+        Command::Plane(args) => commands::plane::run(args),
+        Command::Bound(args) => commands::bound::run(args, line.quiet),
         Command::Completions { shell } => commands::help::completions(*shell),
         Command::Man { command } => commands::help::man(command.as_deref()),
     }

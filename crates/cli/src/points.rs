@@ -39,6 +39,19 @@ pub(crate) struct OffSurface {
     pub(crate) mean: f64,
 }
 
+impl OffSurface {
+    /// How far `all` points are from the surface, in words.
+    pub(crate) fn text(&self, all: usize) -> String {
+        let Self { count, max, mean } = self;
+        match count {
+            0 => format!("none of {all}; farthest {max:.1e}"),
+            _ => format!(
+                "{count} of {all}; farthest {max:.3e}, on average {mean:.3e}: the nearest places are measured"
+            ),
+        }
+    }
+}
+
 /// Reads points and finds their nearest places on the mesh; `progress` hears `read points` and `project`.
 pub(crate) fn read(
     mesh: &SurfaceMesh,

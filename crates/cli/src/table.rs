@@ -18,18 +18,25 @@ pub(crate) struct Measure {
 }
 
 /// All columns. Those with an error are stated over that of independent random points: 1 is random, less is better.
-pub(crate) const MEASURES: [Measure; 11] = [
+/// `patch_sup` is a share of all points, `component` a number of points.
+pub(crate) const MEASURES: [Measure; 13] = [
     Measure { name: "eta", value: |q| q.energy.eta, error: None },
     Measure { name: "energy", value: |q| q.energy.mc, error: Some(|q| q.energy.discrepancy.sqrt()) },
     Measure { name: "ball", value: |q| q.ball.mc, error: Some(|q| q.ball.l2) },
     Measure { name: "half_space", value: |q| q.half_space.mc, error: Some(|q| q.half_space.l2) },
     Measure { name: "patch", value: |q| q.patch.mc, error: Some(|q| q.patch.l2) },
-    Measure { name: "view", value: |q| q.view.mc, error: Some(|q| q.view.l2) },
-    Measure { name: "view_occluded", value: |q| q.view_occluded.mc, error: Some(|q| q.view_occluded.l2) },
+    Measure { name: "patch_sup", value: |q| q.patch.linf, error: None },
+    Measure { name: "view", value: |q| q.view.norms.mc, error: Some(|q| q.view.norms.l2) },
+    Measure {
+        name: "view_occluded",
+        value: |q| q.view_occluded.norms.mc,
+        error: Some(|q| q.view_occluded.norms.l2),
+    },
     Measure { name: "integration", value: |q| q.integration.mc, error: Some(|q| q.integration.rms) },
     Measure { name: "spacing_min", value: |q| q.spacing.min, error: None },
     Measure { name: "spacing_mean", value: |q| q.spacing.mean, error: None },
     Measure { name: "cover", value: |q| q.spacing.cover, error: None },
+    Measure { name: "component", value: |q| q.components.worst, error: None },
 ];
 
 /// Mean and spread of a number over several seeds.
@@ -86,20 +93,29 @@ pub(crate) fn text(rows: &[Row]) -> String {
         cells
     });
     let lines: Vec<Vec<String>> = std::iter::once(head).chain(body).collect();
-    let widths: Vec<usize> = (0..lines[0].len())
-        .map(|c| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0))
-        .collect();
+    aligned(&lines, Some(1))
+}
+
+/// Lines of as many cells each, the first the heading, as a Markdown table with columns of even width: to the right but
+/// for the column `left`.
+pub(crate) fn aligned(lines: &[Vec<String>], left: Option<usize>) -> String {
+    let columns = lines.first().map_or(0, Vec::len);
+    let widths: Vec<usize> =
+        (0..columns).map(|c| lines.iter().map(|line| line[c].chars().count()).max().unwrap_or(0)).collect();
     let mut text = String::new();
     for (i, line) in lines.iter().enumerate() {
         for (c, (cell, width)) in line.iter().zip(&widths).enumerate() {
-            let _ =
-                if c == 1 { write!(text, "| {cell:<width$} ") } else { write!(text, "| {cell:>width$} ") };
+            let _ = if left == Some(c) {
+                write!(text, "| {cell:<width$} ")
+            } else {
+                write!(text, "| {cell:>width$} ")
+            };
         }
         text.push_str("|\n");
         if i == 0 {
             for (c, width) in widths.iter().enumerate() {
                 let dashes = "-".repeat(width + 1);
-                let _ = if c == 1 { write!(text, "|{dashes}-") } else { write!(text, "|{dashes}:") };
+                let _ = if left == Some(c) { write!(text, "|{dashes}-") } else { write!(text, "|{dashes}:") };
             }
             text.push_str("|\n");
         }
@@ -107,7 +123,8 @@ pub(crate) fn text(rows: &[Row]) -> String {
     text
 }
 
-fn cell(Summary { mean, spread }: Summary) -> String {
+/// A mean with its spread, to three digits behind the point; a dash where there is no number.
+pub(crate) fn cell(Summary { mean, spread }: Summary) -> String {
     if !mean.is_finite() {
         return "-".to_owned();
     }

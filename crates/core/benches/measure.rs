@@ -46,6 +46,14 @@ fn measures(criterion: &mut Criterion) {
         group.bench_with_input(BenchmarkId::new("integration", count), &points, |b, points| {
             b.iter(|| black_box(measure::integration(&mesh, points, &Default::default(), &Silent)));
         });
+        group.bench_with_input(BenchmarkId::new("patch", count), &points, |b, points| {
+            b.iter(|| black_box(measure::patch(&mesh, points, &Default::default(), &Silent)));
+        });
+        let options = measure::ViewOptions::for_count(count);
+        let views = measure::Views::new(&mesh, &options, &Silent);
+        group.bench_with_input(BenchmarkId::new("view", count), &points, |b, points| {
+            b.iter(|| black_box(views.measure(&mesh, points, &Silent)));
+        });
         group.bench_with_input(BenchmarkId::new("spacing", count), &points, |b, points| {
             b.iter(|| black_box(measure::spacing(&mesh, points, &Default::default(), &Silent)));
         });

@@ -11,9 +11,10 @@ use ldwrap::pipeline::{self, Options, Request, Run};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::{CheckOptions, Origin, PolygonSoup, Sample, Silent, StripId, SurfaceMesh, SurfacePoint};
 
-use crate::judge::{COLUMNS, Judge, Scores, cells};
 use crate::picture::{PreviewOptions, preview_png, strips_png, strips_svg};
+use crate::quality::{Judge, Quality};
 use crate::report::Report;
+use crate::table::{MEASURES, Summary, cell};
 
 pub(crate) type Outcome<T = ()> = Result<T, Box<dyn Error>>;
 
@@ -106,7 +107,7 @@ pub(crate) struct Object {
 pub(crate) const SEEDS: u64 = 3;
 
 /// Pictures, R and all measures of an object.
-pub(crate) fn write(report: &mut Report, mesh: &SurfaceMesh, object: &Object, judge: &Judge<'_>) -> Outcome {
+pub(crate) fn write(report: &mut Report, mesh: &SurfaceMesh, object: &Object) -> Outcome {
     let Object { stem, file, heading, strips, paper, ways } = *object;
     report.heading(heading);
     report.say(&format!(
@@ -160,10 +161,11 @@ pub(crate) fn write(report: &mut Report, mesh: &SurfaceMesh, object: &Object, ju
         &rows,
     );
     report.say(&format!(
-        "`ldwrap-cli wrap {file} -n {} --no-equalize --growth boundary-walk --report -` (or `flattest-first`).",
+        "`ldwrap-cli wrap {file} -n {} --no-equalize --growth boundary-walk --report -` (or `flattest-first`; any n of the \
+         table).",
         paper[0].0
     ));
-    measures(report, mesh, judge, ways, &paper.iter().map(|p| p.0).collect::<Vec<_>>())?;
+    measures(report, mesh, ways, &paper.iter().map(|p| p.0).collect::<Vec<_>>())?;
     let counts = paper.iter().map(|p| p.0.to_string()).collect::<Vec<_>>().join(",");
     report.say(&format!(
         "`ldwrap-cli compare {file} -n {counts} --seeds {SEEDS}`, and for the paper's order `--methods wrap --growth \
@@ -208,33 +210,39 @@ fn pictures(report: &mut Report, mesh: &SurfaceMesh, run: &Run, stem: &str) -> O
     Ok(())
 }
 
+/// Up to this many points there are [`SEEDS`] sets, and one judge for all of them, as `compare` has one for a run.
+const FEW: usize = 1_000;
+
 /// The table of ways by measures: means over the seeds.
-pub(crate) fn measures(
-    report: &mut Report,
-    mesh: &SurfaceMesh,
-    judge: &Judge<'_>,
-    ways: &[Way],
-    counts: &[usize],
-) -> Outcome {
+pub(crate) fn measures(report: &mut Report, mesh: &SurfaceMesh, ways: &[Way], counts: &[usize]) -> Outcome {
     let mut rows = Vec::new();
-    for &count in counts {
-        let seeds = if count > 1_000 { 1 } else { SEEDS };
-        for &way in ways {
-            let mut sets: Vec<Scores> = Vec::new();
-            let mut seconds = 0.0;
-            for seed in 0..seeds {
-                let (points, took) = way.place(mesh, count, seed)?;
-                seconds += took / seeds as f64;
-                sets.push(judge.scores(&points));
+    let (few, many): (Vec<usize>, Vec<usize>) = counts.iter().partition(|&&count| count <= FEW);
+    for counts in std::iter::once(&few[..]).chain(many.chunks(1)) {
+        let Some(&most) = counts.iter().max() else { continue };
+        let judge = Judge::new(mesh, most, &Silent);
+        let seeds = if most > FEW { 1 } else { SEEDS };
+        for &count in counts {
+            for &way in ways {
+                let (mut sets, mut seconds): (Vec<Quality>, f64) = (Vec::new(), 0.0);
+                for seed in 0..seeds {
+                    let (points, took) = way.place(mesh, count, seed)?;
+                    seconds += took / seeds as f64;
+                    sets.push(judge.quality(&points, &Silent));
+                }
+                let mut row = vec![way.name().to_owned(), count.to_string()];
+                row.extend(
+                    MEASURES
+                        .iter()
+                        .map(|m| cell(Summary::of(&sets.iter().map(m.value).collect::<Vec<f64>>()))),
+                );
+                row.push(format!("{seconds:.2}"));
+                rows.push(row);
             }
-            let mut row = vec![way.name().to_owned(), count.to_string()];
-            row.extend(cells(&sets));
-            row.push(format!("{seconds:.2}"));
-            rows.push(row);
         }
     }
+    let names = MEASURES.map(|measure| measure.name.replace('_', " "));
     let mut head = vec!["", "n"];
-    head.extend(COLUMNS);
+    head.extend(names.iter().map(String::as_str));
     head.push("seconds to place");
     report.table(&head, &rows);
     Ok(())

@@ -15,7 +15,7 @@ use crate::job;
 use crate::methods::Method;
 use crate::output::{Destination, Outputs, Targets};
 use crate::picture::{Line, Panel, error_plot};
-use crate::points;
+use crate::points::{self, OffSurface};
 use crate::progress::Stages;
 use crate::quality::{Judge, Quality};
 use crate::report::{self, MeshReport};
@@ -30,6 +30,8 @@ struct Trial {
     seed: Option<u64>,
     /// How long the points took to make; not known of points from a file.
     seconds: Option<f64>,
+    /// How far points from a file lie from the surface; others lie on it.
+    off_surface: Option<OffSurface>,
     #[serde(flatten)]
     quality: Quality,
 }
@@ -47,12 +49,14 @@ struct Candidate {
     method: String,
     seed: Option<u64>,
     seconds: Option<f64>,
+    off_surface: Option<OffSurface>,
     points: Vec<SurfacePoint>,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
     let options = job::wrap_options(&args.segment, &args.sequence)?;
+    check_names(args)?;
     let mut targets = Targets::default();
     let plot = args.plot.as_deref().map(|path| targets.add("--plot", path));
     targets.check(Some(&args.mesh.mesh))?;
@@ -69,6 +73,7 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
     candidates.extend(placed(args, &methods, &mesh, &options, &stages)?);
     let trials = measured(&mesh, candidates, &stages);
     stages.finish();
+    tell_blunt_views(&trials, &stages);
     let rows = rows(&trials);
     let mut outputs = Outputs::default();
     let printed = if args.json {
@@ -96,6 +101,32 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
     Ok(())
 }
 
+/// Every row of the table must be one set of points at one number: nothing is named twice.
+fn check_names(args: &CompareArgs) -> Outcome {
+    job::refuse_repeated("--count", &args.counts, u32::to_string)?;
+    job::refuse_repeated("--methods", args.methods.as_deref().unwrap_or_default(), |m| m.name())?;
+    let names: Vec<&str> = args.points.iter().map(|points| points.name.as_str()).collect();
+    job::refuse_repeated("--points", &names, |name| format!("the name {name}"))?;
+    match names.iter().find(|name| Method::ALL.iter().any(|method| method.name() == **name)) {
+        Some(name) => Err(Failure::wrong_use(format!(
+            "--points {name}=...: {name} is a method of this program: choose another name"
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Says where the visible areas are known too roughly for what is measured.
+fn tell_blunt_views(trials: &[Trial], stages: &Stages) {
+    let blunt = |trial: &&Trial| !(trial.quality.view.is_sharp && trial.quality.view_occluded.is_sharp);
+    if let Some(trial) = trials.iter().find(blunt) {
+        stages.say(&format!(
+            "note: views: for {} points of {} the error of the visible area is more than a tenth of what is measured \
+             (reference_error in --json)",
+            trial.count, trial.method
+        ));
+    }
+}
+
 /// The name without its folder.
 fn file_name(name: &str) -> String {
     Path::new(name).file_name().map_or_else(|| name.to_owned(), |file| file.to_string_lossy().into_owned())
@@ -121,7 +152,13 @@ fn from_files(args: &CompareArgs, mesh: &SurfaceMesh, stages: &Stages) -> anyhow
         if let Some(note) = placed.note() {
             stages.say(&note);
         }
-        Ok(Candidate { method: name.clone(), seed: None, seconds: None, points: placed.points })
+        Ok(Candidate {
+            method: name.clone(),
+            seed: None,
+            seconds: None,
+            off_surface: Some(placed.off_surface),
+            points: placed.points,
+        })
     };
     args.points.iter().map(read).collect()
 }
@@ -144,7 +181,13 @@ fn placed(
                     .place(mesh, count as usize, seed, options, stages)
                     .with_context(|| format!("{method_name}, n = {count}, seed {seed}"))?;
                 let seconds = Some(begin.elapsed().as_secs_f64());
-                candidates.push(Candidate { method: method_name, seed: Some(seed), seconds, points });
+                candidates.push(Candidate {
+                    method: method_name,
+                    seed: Some(seed),
+                    seconds,
+                    off_surface: None,
+                    points,
+                });
             }
         }
     }
@@ -157,10 +200,10 @@ fn measured(mesh: &SurfaceMesh, candidates: Vec<Candidate>, stages: &Stages) -> 
     let judge = Judge::new(mesh, most, stages);
     let all = candidates.len();
     let trial = |(i, candidate): (usize, Candidate)| {
-        let Candidate { method, seed, seconds, points } = candidate;
+        let Candidate { method, seed, seconds, off_surface, points } = candidate;
         stages.prefix(&format!("{}/{all} {method} n={}: ", i + 1, points.len()));
         let quality = judge.quality(&points, stages);
-        Trial { method, count: points.len(), seed, seconds, quality }
+        Trial { method, count: points.len(), seed, seconds, off_surface, quality }
     };
     let mut trials: Vec<Trial> = candidates.into_iter().enumerate().map(trial).collect();
     // Stable: methods and seeds keep their order.

@@ -1,9 +1,11 @@
 //! One file a command: from its arguments to its outputs.
 
+pub(crate) mod bound;
 pub(crate) mod compare;
 pub(crate) mod help;
 pub(crate) mod info;
 pub(crate) mod measure;
+pub(crate) mod plane;
 pub(crate) mod shape;
 pub(crate) mod strips;
 pub(crate) mod wrap;

@@ -8,7 +8,9 @@ fn a_table_of_methods() {
     let ran = folder.run("compare octahedron.obj -n 20,40 --methods wrap,random,hilbert,poisson -q").ok();
     let lines: Vec<&str> = ran.text().lines().collect();
     assert_eq!(lines.len(), 2 + 8, "{}", ran.text());
-    assert!(lines[0].contains("eta") && lines[0].contains("half space") && lines[0].contains("seconds"));
+    for column in ["eta", "half space", "patch sup", "view occluded", "component", "seconds"] {
+        assert!(lines[0].contains(column), "{column}: {}", lines[0]);
+    }
     for (line, (count, method)) in lines[2..].iter().zip([
         ("20", "wrap"),
         ("20", "random"),
@@ -82,6 +84,12 @@ fn points_of_other_tools_take_part() {
     assert!(theirs["seconds"].is_null() && ours["seconds"]["mean"].is_number());
     let eta = |row: &serde_json::Value| row["measures"]["eta"]["mean"].as_f64().expect("a number");
     assert!((eta(&ours) / eta(&theirs) - 1.0).abs() < 1e-6);
+    for (name, known) in [("wrap", false), ("theirs", true)] {
+        let sets = report["sets"].as_array().expect("a list");
+        let off = &sets.iter().find(|set| set["method"] == name).expect("a set")["off_surface"];
+        assert_eq!(off.is_object(), known, "{name}: {off}");
+        assert!(!known || off["count"] == 0, "{off}");
+    }
     folder.run("compare octahedron.obj --points theirs.csv").refused(&["NAME=FILE"]);
     folder.run("compare octahedron.obj -n 5 --points a=none.xyz").failed(&["none.xyz"]);
 }
@@ -100,6 +108,49 @@ fn the_plot_shows_methods_and_slopes() {
         assert!(svg.contains(word), "{word}");
     }
     assert!(!svg.contains("NaN"));
+}
+
+#[test]
+fn columns_and_sets_are_the_same_numbers() {
+    let folder = Folder::with_octahedron();
+    let report = folder.run("compare octahedron.obj -n 50 --methods hilbert --json -q").ok().json();
+    let (row, set) = (&report["table"][0]["measures"], &report["sets"][0]);
+    assert_eq!(row["patch_sup"]["mean"], set["patch"]["linf"]);
+    assert_eq!(row["component"]["mean"], set["components"]["worst"]);
+    assert_eq!(row["view"]["mean"], set["view"]["mc"]);
+    assert!(set["view"]["reference_error"].is_number());
+}
+
+#[test]
+fn twice_the_same_bits_but_for_the_seconds() {
+    let folder = Folder::with_octahedron();
+    let compared = |threads: &str| {
+        let command = "compare octahedron.obj -n 30,60 --methods equalize,random,poisson --seeds 2 --json -q";
+        let mut report = folder.run(&format!("{command} {threads}")).ok().json();
+        for list in ["table", "sets"] {
+            for entry in report[list].as_array_mut().expect("a list") {
+                entry["seconds"] = serde_json::Value::Null;
+            }
+        }
+        report
+    };
+    let first = compared("");
+    assert_eq!(first, compared(""));
+    assert_eq!(first, compared("--threads 1"));
+}
+
+#[test]
+fn nothing_is_named_twice() {
+    let folder = Folder::with_octahedron();
+    folder.write("p.xyz", "1 0 0\n");
+    folder.run("compare octahedron.obj -n 5,9,5").refused(&["--count", "5 is given twice"]);
+    folder.run("compare octahedron.obj -n 5 --methods wrap,random,wrap").refused(&["--methods", "wrap"]);
+    folder
+        .run("compare octahedron.obj -n 5 --points a=p.xyz --points a=p.xyz")
+        .refused(&["--points", "the name a is given twice"]);
+    folder
+        .run("compare octahedron.obj -n 5 --methods wrap --points poisson=p.xyz")
+        .refused(&["--points", "poisson is a method"]);
 }
 
 #[test]

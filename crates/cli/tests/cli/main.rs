@@ -5,6 +5,7 @@ mod common;
 mod compare;
 mod measure;
 mod outputs;
+mod plane;
 mod repairs;
 mod shape;
 mod wrap;

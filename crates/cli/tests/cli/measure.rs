@@ -30,8 +30,12 @@ fn the_json_has_its_keys() {
             assert!(report[key][norm].is_number(), "{key}.{norm}: {}", report[key]);
         }
     }
+    for key in ["view", "view_occluded"] {
+        let (error, l2) = (number(&report[key]["reference_error"]), number(&report[key]["l2"]));
+        assert!((0.0..=0.1 * l2).contains(&error), "{key}: {error} of {l2}");
+    }
     for (key, names) in [
-        ("energy", &["eta", "mc"][..]),
+        ("energy", &["eta", "mc", "relative_error", "mean_distance", "mean_distance_error"][..]),
         ("integration", &["rms", "mc"]),
         ("spacing", &["min", "mean", "cover"]),
         ("components", &["count", "worst"]),
@@ -40,6 +44,8 @@ fn the_json_has_its_keys() {
             assert!(report[key][name].is_number(), "{key}.{name}: {}", report[key]);
         }
     }
+    assert_eq!(report["component_shares"][0]["points"], 64);
+    assert!((number(&report["component_shares"][0]["expected"]) - 64.0).abs() < 1e-9);
     assert_eq!(report["points"]["count"], 64);
     assert_eq!(report["points"]["off_surface"]["count"], 0);
     assert_eq!(report["mesh"]["faces"], 8);
@@ -89,6 +95,12 @@ fn points_off_the_surface_are_told() {
     assert!((number(&off["max"]) - 0.25).abs() < 1e-12);
     assert!((number(&off["mean"]) - 0.25 * 16.0 / 17.0).abs() < 1e-12);
     ran.says(&["note: above.xyz: 16 of 17 points lie off the surface"]);
+    // The text says it too, whatever is hidden on stderr.
+    let text = folder.run("measure square.obj above.xyz -q").ok();
+    assert!(text.text().contains("off the surface           16 of 17; farthest 2.500e-1"), "{}", text.text());
+    folder.write("on.xyz", lattice(4, 0.0));
+    let text = folder.run("measure square.obj on.xyz -q").ok();
+    assert!(text.text().contains("off the surface           none of 16"), "{}", text.text());
 }
 
 #[test]
@@ -116,6 +128,11 @@ fn a_summary_for_people() {
     {
         assert!(ran.text().contains(word), "{word}: {}", ran.text());
     }
+    assert!(
+        ran.text().contains("visible area known to") && ran.text().contains("1 ± 0.25"),
+        "{}",
+        ran.text()
+    );
     let one = folder.run_with_input("measure square.obj - --points-format xyz", "1 1 0\n").ok();
     assert!(one.text().contains("1 point on") && !one.text().contains("NaN"), "{}", one.text());
 }
@@ -139,6 +156,23 @@ fn bad_points() {
     }
     folder.run("measure - -").refused(&["stdin"]);
     folder.run("measure square.obj").refused(&["POINTS"]);
+}
+
+/// NumPy's format with these numbers, 3 a row.
+fn npy(kind: &str, rows: usize, numbers: &[u8]) -> Vec<u8> {
+    let head = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({rows}, 3), }}\n");
+    let length = (head.len() as u16).to_le_bytes();
+    [b"\x93NUMPY\x01\0", &length[..], head.as_bytes(), numbers].concat()
+}
+
+#[test]
+fn npy_of_other_numbers_is_read_or_refused_in_words() {
+    let folder = folder();
+    let single: Vec<u8> = [1.0f32, 0.5, 0.0].iter().flat_map(|x| x.to_be_bytes()).collect();
+    folder.write("single.npy", npy(">f4", 1, &single));
+    assert_eq!(folder.run("measure square.obj single.npy --json -q").ok().json()["points"]["count"], 1);
+    folder.write("words.npy", npy("<U4", 1, &[0; 48]));
+    folder.run("measure square.obj words.npy").failed(&["words.npy", "npy", "numbers are"]);
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! What figures are compared with, and useful in themselves: independent random points, points in Hilbert order,
-//! Poisson disk, and lattices on the sphere. They import no stage.
+//! Poisson disk, and lattices on the sphere; on the unit square a lattice and random points. They import no stage.
 //!
 //! Every baseline gives exactly as many points as asked for, and the same bits for the same mesh, count and seed.
 
@@ -8,6 +8,7 @@ mod hilbert;
 mod poisson;
 mod random;
 mod sphere;
+mod square;
 
 use thiserror::Error;
 
@@ -19,6 +20,7 @@ pub use hilbert::hilbert;
 pub use poisson::poisson;
 pub use random::random;
 pub use sphere::{Sphere, hammersley_directions, spherical_fibonacci};
+pub use square::{square_lattice, square_random};
 
 /// A way to place points that needs no segmentation and no unfolding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -90,6 +92,7 @@ mod purpose {
     pub(super) const HILBERT: u64 = 0x62_61_73_02;
     pub(super) const POISSON: u64 = 0x62_61_73_03;
     pub(super) const SPHERE: u64 = 0x62_61_73_04;
+    pub(super) const SQUARE: u64 = 0x62_61_73_05;
 }
 
 #[cfg(test)]

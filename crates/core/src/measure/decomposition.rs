@@ -2,10 +2,12 @@
 //! and the bound that follows (eq. 6 and 7).
 
 use super::patch::{self, PatchOptions};
-use crate::ids::HalfedgeId;
+use super::{Norms, Shares};
+use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::progress::Progress;
+use crate::sample::SurfacePoint;
 use crate::unfold::Strips;
 
 /// Into how many parts sample figures fall.
@@ -69,37 +71,146 @@ pub fn decomposition(
     let seeds = patch::seed_faces(mesh, options);
     progress.begin("decomposition", seeds.len() as u64);
     let tallies = parallel::map(seeds.len(), |i| {
-        if progress.is_cancelled() {
-            return (0, 0, 0);
+        let mut tally = Tally::default();
+        if !progress.is_cancelled() {
+            let mut parts = Parts::new(mesh.face_count());
+            patch::grow(mesh.topology(), seeds[i], |ring| {
+                parts.grow(mesh, joints, ring, |_| 0.0);
+                tally.add(parts.count);
+            });
+            progress.advance(1);
         }
-        let mut parts = Parts::new(mesh.face_count());
-        let (mut most, mut sum, mut figures) = (0, 0u64, 0u64);
-        patch::grow(mesh.topology(), seeds[i], |ring| {
-            for &face in ring {
-                parts.add(face.0);
-                for corner in 0..3 {
-                    let halfedge = HalfedgeId::of(face, corner);
-                    if joints.is_joined(halfedge)
-                        && let Some(twin) = mesh.topology().twin(halfedge)
-                    {
-                        parts.join(face.0, twin.face().0);
-                    }
-                }
-            }
-            most = most.max(parts.count);
-            sum += parts.count as u64;
-            figures += 1;
-        });
-        progress.advance(1);
-        (most, sum, figures)
+        tally
     });
-    let (mut degree, mut sum, mut figures) = (0, 0, 0);
-    for (most, parts, count) in tallies {
-        degree = degree.max(most);
-        sum += parts;
-        figures += count;
+    Tally::total(&tallies)
+}
+
+/// Norms over sample figures: eq. 1 to 3 of the paper divided by the number of points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FigureNorms {
+    /// The largest value.
+    pub linf: f64,
+    /// The mean.
+    pub l1: f64,
+    /// The root of the mean square.
+    pub l2: f64,
+}
+
+/// The discrepancy of points over sample figures, and what eq. 6 bounds it by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PartDiscrepancy {
+    /// Into how many parts the figures fall.
+    pub decomposition: Decomposition,
+    /// Over the figures: what [`patch`](super::patch()) measures.
+    pub figure: Norms,
+    /// Over the figures, each with the largest |share of points - share of area| of its parts: the norm of eq. 6's
+    /// max c times the discrepancy of the plane, measured.
+    pub largest_part: FigureNorms,
+    /// The bound of eq. 6 on `figure`: f_d times `largest_part`, in each norm. It holds for any points and parts of
+    /// any shape, because the difference of a figure is the sum of those of its parts.
+    pub bound: FigureNorms,
+}
+
+/// Measures points over the figures of [`decomposition`] and over their parts: the bound of eq. 6 from measured parts.
+/// A part holds the points of its faces, and its area is exact. NaN without points.
+///
+/// O(seeds (faces + rings parts)). `progress` counts seed triangles.
+pub fn part_discrepancy(
+    mesh: &SurfaceMesh,
+    joints: &Joints,
+    points: &[SurfacePoint],
+    options: &PatchOptions,
+    progress: &dyn Progress,
+) -> PartDiscrepancy {
+    let mut counts = vec![0u32; mesh.face_count()];
+    for point in points {
+        counts[point.face.index()] += 1;
     }
-    Decomposition { degree, mean: sum as f64 / figures as f64, figures: figures as usize }
+    let n = points.len() as f64;
+    let excess = |face: FaceId| f64::from(counts[face.index()]) / n - mesh.face_area(face) / mesh.area();
+    let seeds = patch::seed_faces(mesh, options);
+    progress.begin("decomposition", seeds.len() as u64);
+    let grown = parallel::map(seeds.len(), |i| {
+        let (mut tally, mut figures, mut largest) = (Tally::default(), Vec::new(), Vec::new());
+        if !progress.is_cancelled() {
+            let mut parts = Parts::new(mesh.face_count());
+            let (mut held, mut area) = (0u64, 0.0);
+            patch::grow(mesh.topology(), seeds[i], |ring| {
+                for face in ring {
+                    held += u64::from(counts[face.index()]);
+                    area += mesh.face_area(*face);
+                }
+                parts.grow(mesh, joints, ring, excess);
+                tally.add(parts.count);
+                figures.push(Shares { area: (area / mesh.area()).min(1.0), points: held as f64 / n });
+                largest.push(parts.largest());
+            });
+            progress.advance(1);
+        }
+        (tally, figures, largest)
+    });
+    let tallies: Vec<Tally> = grown.iter().map(|(tally, ..)| *tally).collect();
+    let figures: Vec<Shares> = grown.iter().flat_map(|(_, figures, _)| figures.iter().copied()).collect();
+    let decomposition = Tally::total(&tallies);
+    let largest_part = FigureNorms::over(grown.iter().flat_map(|(.., largest)| largest.iter().copied()));
+    PartDiscrepancy {
+        decomposition,
+        figure: Norms::over(&figures, points.len()),
+        largest_part,
+        bound: largest_part.times(decomposition.degree as f64),
+    }
+}
+
+impl FigureNorms {
+    /// Of values that are not negative; NaN if there is none or one is NaN.
+    fn over(values: impl Iterator<Item = f64>) -> Self {
+        let (mut linf, mut sum, mut squares, mut count) = (0.0f64, 0.0, 0.0, 0.0);
+        for value in values {
+            linf = linf.max(value);
+            sum += value;
+            squares += value * value;
+            count += 1.0;
+        }
+        // A mean without values or of NaN is NaN, which a maximum would hide.
+        let l1 = sum / count;
+        Self { linf: if l1.is_nan() { f64::NAN } else { linf }, l1, l2: (squares / count).sqrt() }
+    }
+
+    fn times(self, factor: f64) -> Self {
+        Self { linf: factor * self.linf, l1: factor * self.l1, l2: factor * self.l2 }
+    }
+}
+
+/// The parts of the figures of one seed.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    most: usize,
+    sum: u64,
+    figures: u64,
+}
+
+impl Tally {
+    fn add(&mut self, parts: usize) {
+        self.most = self.most.max(parts);
+        self.sum += parts as u64;
+        self.figures += 1;
+    }
+
+    fn total(tallies: &[Self]) -> Decomposition {
+        let mut total = Self::default();
+        for tally in tallies {
+            total.most = total.most.max(tally.most);
+            total.sum += tally.sum;
+            total.figures += tally.figures;
+        }
+        Decomposition {
+            degree: total.most,
+            mean: total.sum as f64 / total.figures as f64,
+            figures: total.figures as usize,
+        }
+    }
 }
 
 /// The bound of eq. 7 on the share of points - share of area of any sample figure: `degree` times the discrepancy
@@ -111,10 +222,14 @@ pub fn surface_bound(degree: usize, planar: f64, domain_points: usize, points: u
     degree as f64 * planar * domain_points as f64 / points as f64
 }
 
-/// Faces added one by one and joined: union-find with path halving.
+/// Faces added ring by ring and joined: union-find with path halving.
 struct Parts {
     parent: Vec<u32>,
     count: usize,
+    /// For each root the share of points less the share of area of its part.
+    excess: Vec<f64>,
+    /// The roots, and since the last call of [`largest`](Self::largest) also what was one.
+    roots: Vec<u32>,
 }
 
 /// A face that was not added yet.
@@ -122,11 +237,28 @@ const ABSENT: u32 = u32::MAX;
 
 impl Parts {
     fn new(faces: usize) -> Self {
-        Self { parent: vec![ABSENT; faces], count: 0 }
+        Self { parent: vec![ABSENT; faces], count: 0, excess: vec![0.0; faces], roots: Vec::new() }
     }
 
-    fn add(&mut self, face: u32) {
-        self.parent[face as usize] = face;
+    /// Adds the faces of a ring, each with its excess, and joins what lies joined in the plane.
+    fn grow(&mut self, mesh: &SurfaceMesh, joints: &Joints, ring: &[FaceId], excess: impl Fn(FaceId) -> f64) {
+        for &face in ring {
+            self.add(face, excess(face));
+            for corner in 0..3 {
+                let halfedge = HalfedgeId::of(face, corner);
+                if joints.is_joined(halfedge)
+                    && let Some(twin) = mesh.topology().twin(halfedge)
+                {
+                    self.join(face.0, twin.face().0);
+                }
+            }
+        }
+    }
+
+    fn add(&mut self, face: FaceId, excess: f64) {
+        self.parent[face.index()] = face.0;
+        self.excess[face.index()] = excess;
+        self.roots.push(face.0);
         self.count += 1;
     }
 
@@ -146,16 +278,28 @@ impl Parts {
         }
         let (a, b) = (self.root(a), self.root(b));
         if a != b {
-            self.parent[a.max(b) as usize] = a.min(b);
+            let (low, high) = (a.min(b), a.max(b));
+            self.parent[high as usize] = low;
+            self.excess[low as usize] += self.excess[high as usize];
             self.count -= 1;
         }
+    }
+
+    /// The largest |excess| of a part; NaN if one is NaN.
+    fn largest(&mut self) -> f64 {
+        let Self { parent, roots, excess, .. } = self;
+        roots.retain(|&face| parent[face as usize] == face);
+        roots
+            .iter()
+            .map(|&face| excess[face as usize].abs())
+            .fold(0.0, |largest: f64, value| if value.is_nan() { value } else { largest.max(value) })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ids::FaceId;
+    use crate::baseline::random;
     use crate::mesh::shapes;
     use crate::planted::mesh;
     use crate::progress::Silent;
@@ -232,32 +376,27 @@ mod tests {
         let ball = mesh(&shapes::uv_sphere(12, 12));
         let joints = Joints::of(&ball, &unfolded(&ball), 1e-6);
         let seed = FaceId(17);
+        let excess = |face: FaceId| f64::from(face.0 % 7) - 3.0;
         let mut figure = vec![false; ball.face_count()];
         let mut parts = Parts::new(ball.face_count());
         patch::grow(ball.topology(), seed, |ring| {
+            parts.grow(&ball, &joints, ring, excess);
             for &face in ring {
                 figure[face.index()] = true;
-                parts.add(face.0);
-                for corner in 0..3 {
-                    let halfedge = HalfedgeId::of(face, corner);
-                    let twin = ball.topology().twin(halfedge).expect("a closed body");
-                    if joints.is_joined(halfedge) {
-                        parts.join(face.0, twin.face().0);
-                    }
-                }
             }
             let mut seen = figure.iter().map(|&inside| !inside).collect::<Vec<bool>>();
-            let mut count = 0;
+            let (mut count, mut largest) = (0, 0.0f64);
             for start in ball.topology().face_ids() {
                 if seen[start.index()] {
                     continue;
                 }
                 count += 1;
-                let mut stack = vec![start];
+                let (mut stack, mut sum) = (vec![start], 0.0);
                 while let Some(face) = stack.pop() {
                     if std::mem::replace(&mut seen[face.index()], true) {
                         continue;
                     }
+                    sum += excess(face);
                     for corner in 0..3 {
                         let halfedge = HalfedgeId::of(face, corner);
                         if joints.is_joined(halfedge) {
@@ -265,13 +404,66 @@ mod tests {
                         }
                     }
                 }
+                largest = largest.max(sum.abs());
             }
             assert_eq!(parts.count, count);
+            // Whole numbers: their sums have no rounding.
+            assert_eq!(parts.largest(), largest);
         });
     }
 
     #[test]
-    fn the_bound_by_hand() {
+    fn eq_6_by_hand() {
+        // Two triangles cut apart, all points in one: each figure has a part that is off by a half. The first ring is
+        // off by a half, the whole square by nothing.
+        let square = mesh(&shapes::square(1));
+        let alone = |face| Segment { attachments: vec![Attachment { face, across: None }] };
+        let cut = Segmentation { segments: square.topology().face_ids().map(alone).collect() };
+        let joints = Joints::of(&square, &unfold(&square, &cut), 1e9);
+        let point = SurfacePoint { face: FaceId(0), barycentric: [0.2, 0.3, 0.5] };
+        let report = part_discrepancy(&square, &joints, &[point; 8], &PatchOptions::default(), &Silent);
+        assert_eq!(report.decomposition.degree, 2);
+        assert_eq!(report.largest_part, FigureNorms { linf: 0.5, l1: 0.5, l2: 0.5 });
+        assert_eq!(report.bound, FigureNorms { linf: 1.0, l1: 1.0, l2: 1.0 });
+        assert_eq!((report.figure.linf, report.figure.l1), (0.5, 0.25));
+        let none = part_discrepancy(&square, &joints, &[], &PatchOptions::default(), &Silent);
+        assert!(none.bound.linf.is_nan() && none.largest_part.l2.is_nan() && none.figure.l1.is_nan());
+        assert_eq!(none.decomposition, report.decomposition);
+    }
+
+    #[test]
+    fn eq_6_holds_in_every_norm_and_measures_what_patches_do() {
+        let options = PatchOptions { seeds: 40, seed: 1 };
+        for soup in [shapes::uv_sphere(20, 20), shapes::torus(30, 12, 0.4), shapes::scan_like(2, 900)] {
+            let body = mesh(&soup);
+            let points = random(&body, 120, 4);
+            for tolerance in [1e-9, 0.02, 1e9] {
+                let joints = Joints::of(&body, &unfolded(&body), tolerance);
+                let report = part_discrepancy(&body, &joints, &points, &options, &Silent);
+                assert_eq!(report.figure, patch::patch(&body, &points, &options, &Silent));
+                assert_eq!(report.decomposition, decomposition(&body, &joints, &options, &Silent));
+                let (figure, bound) = (report.figure, report.bound);
+                assert!(figure.linf <= bound.linf + 1e-12, "{report:?}");
+                assert!(figure.l1 <= bound.l1 + 1e-12 && figure.l2 <= bound.l2 + 1e-12, "{report:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_cuts_eq_6_is_the_measured_value() {
+        let square = mesh(&shapes::square(6));
+        let joints = Joints::of(&square, &unfolded(&square), 1e-9);
+        let points = random(&square, 50, 2);
+        let report = part_discrepancy(&square, &joints, &points, &PatchOptions::default(), &Silent);
+        let Norms { linf, l1, l2, .. } = report.figure;
+        assert_eq!(report.decomposition.degree, 1);
+        for (bound, measured) in [(report.bound.linf, linf), (report.bound.l1, l1), (report.bound.l2, l2)] {
+            assert!((bound - measured).abs() < 1e-12, "{report:?}");
+        }
+    }
+
+    #[test]
+    fn eq_7_by_hand() {
         // Ten parts, each off by at most 2 of 100 points in the domain, of which 50 land on the surface: 20 of 50.
         assert!((surface_bound(10, 0.02, 100, 50) - 0.4).abs() < 1e-15);
     }

@@ -58,6 +58,9 @@ pub struct EnergyReport {
     pub directions: usize,
     /// E|Y - Y'|, the mean distance of two random places, in units of the mesh.
     pub mean_distance: f64,
+    /// The standard error of `mean_distance`, over `mean_distance`; found like `relative_error`. `mc` errs by half the
+    /// root of the sum of the squares of both.
+    pub mean_distance_error: f64,
 }
 
 /// The planes of one mesh with their shares of area: made once, then any number of point sets are measured by them.
@@ -98,7 +101,7 @@ impl EnergyPlanes {
         let positions: Vec<DVec3> = points.iter().map(|p| mesh.locate(p)).collect();
         let pilot = |i: usize| self.pilot[i].as_ref().map_or([0.0; 2], |p| integrate(p, &positions));
         let mut integrals = Integrals::of(&parallel::map(self.pilot.len(), pilot));
-        let error = integrals.relative_error();
+        let error = integrals.relative_errors()[0];
         if error > self.options.tolerance {
             let work = self.scene.face_count() + points.len() + self.planes;
             let most = self.options.work / work as f64 / BLOCKS as f64;
@@ -117,13 +120,15 @@ impl EnergyPlanes {
         }
         let n = points.len() as f64;
         let [discrepancy, mean_distance] = integrals.means;
+        let [relative_error, mean_distance_error] = integrals.relative_errors();
         EnergyReport {
             eta: KAPPA * mesh.area().sqrt() / (n * n.sqrt()) / discrepancy,
             mc: (discrepancy * n / mean_distance).sqrt(),
             discrepancy,
-            relative_error: integrals.relative_error(),
+            relative_error,
             directions: integrals.directions,
             mean_distance,
+            mean_distance_error,
         }
     }
 }
@@ -173,10 +178,13 @@ impl Integrals {
         Self { means: mean(&blocks), blocks, directions: integrals.len() }
     }
 
-    /// The standard error of D^2 over D^2.
-    fn relative_error(&self) -> f64 {
-        let squares: f64 = self.blocks.iter().map(|b| (b[0] - self.means[0]) * (b[0] - self.means[0])).sum();
-        (squares / (BLOCKS * (BLOCKS - 1)) as f64).sqrt() / self.means[0]
+    /// The standard errors of D^2 and E|Y - Y'|, each over its value.
+    fn relative_errors(&self) -> [f64; 2] {
+        std::array::from_fn(|k| {
+            let mean = self.means[k];
+            let squares: f64 = self.blocks.iter().map(|b| (b[k] - mean) * (b[k] - mean)).sum();
+            (squares / (BLOCKS * (BLOCKS - 1)) as f64).sqrt() / mean
+        })
     }
 }
 
@@ -246,7 +254,9 @@ mod tests {
         let error = report.discrepancy / exact_on_square(points) - 1.0;
         assert!(report.relative_error < 0.011, "{report:?}");
         assert!(error.abs() < 4.0 * report.relative_error, "off by {error}: {report:?}");
-        assert!((report.mean_distance / 0.521_405_433 - 1.0).abs() < 0.01, "{report:?}");
+        let error = report.mean_distance / 0.521_405_433 - 1.0;
+        assert!(report.mean_distance_error < 0.005, "{report:?}");
+        assert!(error.abs() < 4.0 * report.mean_distance_error + 1e-6, "off by {error}: {report:?}");
         report
     }
 
@@ -307,6 +317,22 @@ mod tests {
         }
         let sphere = measure(&testmesh::sphere(30), &random_points(&testmesh::sphere(30), 5, 1));
         assert!((sphere.mean_distance - 4.0 / 3.0).abs() < 2e-3, "{sphere:?}");
+    }
+
+    #[test]
+    fn halving_the_error_changes_nothing_that_is_measured() {
+        let mesh = testmesh::sphere(12);
+        let points = random_points(&mesh, 300, 2);
+        let rough = measure(&mesh, &points);
+        let options = EnergyOptions { tolerance: 0.5 * rough.relative_error, work: 1e9 };
+        let fine = energy(&mesh, &points, &options, &Silent);
+        assert!(fine.relative_error < 0.6 * rough.relative_error, "{rough:?} {fine:?}");
+        assert!((fine.discrepancy / rough.discrepancy - 1.0).abs() < 4.0 * rough.relative_error);
+        assert!((fine.mean_distance / rough.mean_distance - 1.0).abs() < 4.0 * rough.mean_distance_error);
+        // More planes across a direction than are taken for this many points.
+        let more = EnergyPlanes::new(&mesh, 100_000, &EnergyOptions::default(), &Silent);
+        let more = more.measure(&mesh, &points, &Silent);
+        assert!((more.discrepancy / rough.discrepancy - 1.0).abs() < rough.relative_error, "{more:?}");
     }
 
     #[test]

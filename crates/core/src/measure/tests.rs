@@ -4,8 +4,8 @@ use glam::{DQuat, DVec3};
 
 use crate::measure::testmesh::{self, random_points};
 use crate::measure::{
-    BallReport, ComponentReport, EnergyReport, HalfSpaceReport, IntegrationReport, SpacingReport, ball,
-    components, energy, half_space, integration, spacing,
+    BallReport, ComponentReport, EnergyReport, HalfSpaceReport, IntegrationReport, Norms, PatchOptions,
+    SpacingReport, ViewOptions, ball, components, energy, half_space, integration, patch, spacing, view,
 };
 use crate::mesh::SurfaceMesh;
 use crate::progress::Silent;
@@ -17,6 +17,7 @@ struct All {
     energy: EnergyReport,
     half_space: HalfSpaceReport,
     ball: BallReport,
+    patch: Norms,
     integration: IntegrationReport,
     spacing: SpacingReport,
     components: ComponentReport,
@@ -27,6 +28,7 @@ fn measure(mesh: &SurfaceMesh, points: &[SurfacePoint]) -> All {
         energy: energy(mesh, points, &Default::default(), &Silent),
         half_space: half_space(mesh, points, &Default::default(), &Silent),
         ball: ball(mesh, points, &Default::default(), &Silent),
+        patch: patch(mesh, points, &Default::default(), &Silent),
         integration: integration(mesh, points, &Default::default(), &Silent),
         spacing: spacing(mesh, points, &Default::default(), &Silent),
         components: components(mesh, points),
@@ -40,11 +42,32 @@ fn close(x: f64, y: f64) -> bool {
 #[test]
 #[cfg(feature = "parallel")]
 fn same_bits_twice_and_with_any_number_of_threads() {
+    use glam::DVec2;
+
+    use crate::measure::decomposition::{Joints, part_discrepancy};
+    use crate::measure::plane::{square_discrepancy, star_discrepancy};
+    use crate::segment::{SegmentOptions, segment};
+    use crate::sequence::Sequence;
+    use crate::unfold::unfold;
+
     let mesh = testmesh::sphere(20);
     let points = random_points(&mesh, 3000, 1);
+    let joints = Joints::of(&mesh, &unfold(&mesh, &segment(&mesh, &SegmentOptions::default())), 1e-3);
+    let places: Vec<DVec2> = (0..3000).map(|i| Sequence::R2.point(i, 3000)).collect();
+    let views = ViewOptions { views: 12, nodes: 4000, ..ViewOptions::default() };
+    let patches = PatchOptions { seeds: 20, seed: 0 };
+    let every = || {
+        (
+            measure(&mesh, &points),
+            view(&mesh, &points, &views, &Silent),
+            part_discrepancy(&mesh, &joints, &points, &patches, &Silent),
+            star_discrepancy(&places),
+            square_discrepancy(&places),
+        )
+    };
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a thread pool");
-        pool.install(|| measure(&mesh, &points))
+        pool.install(every)
     };
     let once = run(1);
     assert_eq!(once, run(1));
@@ -63,6 +86,7 @@ fn the_order_of_the_points_does_not_matter() {
     assert_eq!(before.energy, after.energy);
     assert_eq!(before.half_space, after.half_space);
     assert_eq!(before.ball, after.ball);
+    assert_eq!(before.patch, after.patch);
     assert_eq!(before.components, after.components);
     assert!(close(before.integration.rms, after.integration.rms));
     assert_eq!(before.spacing.min, after.spacing.min);
@@ -116,6 +140,7 @@ fn random_points_are_as_good_as_random() {
             ("energy", mean_square(reports.iter().map(|r| r.energy.mc))),
             ("half-space", mean_square(reports.iter().map(|r| r.half_space.norms.mc))),
             ("ball", mean_square(reports.iter().map(|r| r.ball.norms.mc))),
+            ("patch", mean_square(reports.iter().map(|r| r.patch.mc))),
             ("integration", mean_square(reports.iter().map(|r| r.integration.mc))),
         ];
         for (name, (mean, error)) in ratios {
@@ -154,6 +179,8 @@ fn a_cancelled_measure_returns() {
     let mesh = testmesh::cube();
     let points = random_points(&mesh, 10, 5);
     energy(&mesh, &points, &Default::default(), &Cancelled);
+    patch(&mesh, &points, &Default::default(), &Cancelled);
+    view(&mesh, &points, &Default::default(), &Cancelled);
     half_space(&mesh, &points, &Default::default(), &Cancelled);
     ball(&mesh, &points, &Default::default(), &Cancelled);
     integration(&mesh, &points, &Default::default(), &Cancelled);

@@ -38,7 +38,7 @@ fn half_of_a_centrally_symmetric_convex_body_is_seen_from_afar() {
         }
         assert!(perspective.iter().all(|&share| share > 0.0 && share < 0.5 + 1e-12));
         // Nothing of a convex body is hidden: the visible area is exact.
-        assert_eq!(views.measure(&body, &[]).reference_error, 0.0);
+        assert_eq!(views.measure(&body, &[], &Silent).reference_error, 0.0);
     }
 }
 
@@ -86,16 +86,37 @@ fn the_reference_error_is_what_it_says() {
     let fine = Views::new(&body, &options(60, 60_000), &Silent);
     let errors = rough.visible_areas().zip(fine.visible_areas()).map(|(a, b)| a - b);
     let actual = root_mean_square(errors);
-    let (stated, fine_stated) =
-        (rough.measure(&body, &[]).reference_error, fine.measure(&body, &[]).reference_error);
+    let (stated, fine_stated) = (
+        rough.measure(&body, &[], &Silent).reference_error,
+        fine.measure(&body, &[], &Silent).reference_error,
+    );
     assert!(actual > 0.6 * stated && actual < 1.6 * stated, "{actual} {stated}");
     assert!(fine_stated < 0.2 * stated);
     // And a finer reference changes what is measured by no more than it says.
     let points = random(&body, 200, 1);
-    let (a, b) = (rough.measure(&body, &points), fine.measure(&body, &points));
+    let (a, b) = (rough.measure(&body, &points, &Silent), fine.measure(&body, &points, &Silent));
     assert!(a.reference_error < 0.1 * a.view.l2);
     assert!((a.view.l2 / b.view.l2 - 1.0).abs() < 0.02, "{a:?} {b:?}");
     assert!((a.view_occluded.l2 / b.view_occluded.l2 - 1.0).abs() < 0.02);
+}
+
+#[test]
+fn more_points_get_more_nodes_within_bounds() {
+    let nodes = |count| ViewOptions::for_count(count).nodes;
+    assert_eq!([0, 1, 1000, 10_000].map(nodes), [64_000, 64_000, 128_000, 800_000]);
+    assert_eq!([50_000, 100_000, usize::MAX].map(nodes), [2_000_000, 4_000_000, 4_000_000]);
+    let counts = (0..60).map(|k| 1usize << (k / 2) | 1 << (k / 3));
+    assert!(counts.clone().zip(counts.skip(1)).all(|(a, b)| a > b || nodes(a) <= nodes(b)));
+}
+
+#[test]
+fn a_blunt_reference_is_told() {
+    let body = mesh(&shapes::torus(30, 15, 0.4));
+    let points = hilbert(&body, 4000, 0);
+    let sharp =
+        |nodes| Views::new(&body, &options(32, nodes), &Silent).measure(&body, &points, &Silent).is_sharp();
+    assert_eq!(sharp(500), [false, false]);
+    assert_eq!(sharp(400_000), [true, true]);
 }
 
 #[test]
@@ -104,7 +125,7 @@ fn random_points_measure_as_random() {
     let views = Views::new(&body, &options(64, 20_000), &Silent);
     let (mut plain, mut occluded) = (0.0, 0.0);
     for seed in 0..60 {
-        let report = views.measure(&body, &random(&body, 100, seed));
+        let report = views.measure(&body, &random(&body, 100, seed), &Silent);
         plain += report.view.mc * report.view.mc / 60.0;
         occluded += report.view_occluded.mc * report.view_occluded.mc / 60.0;
     }
@@ -118,10 +139,10 @@ fn better_points_measure_better_and_clumped_ones_worse() {
     let ball = mesh(&shapes::uv_sphere(40, 40));
     let views = Views::new(&ball, &options(64, 20_000), &Silent);
     let fibonacci = Baseline::SphereFibonacci.place(&ball, 500, 0).expect("a sphere");
-    assert!(views.measure(&ball, &fibonacci).view.mc < 0.2);
-    assert!(views.measure(&ball, &fibonacci).view_occluded.mc < 0.35);
+    assert!(views.measure(&ball, &fibonacci, &Silent).view.mc < 0.2);
+    assert!(views.measure(&ball, &fibonacci, &Silent).view_occluded.mc < 0.35);
     let clumped = vec![fibonacci[3]; 500];
-    let report = views.measure(&ball, &clumped);
+    let report = views.measure(&ball, &clumped, &Silent);
     // A single place is seen in whole or not at all.
     assert!(report.view.mc > 15.0 && report.view.linf > 0.4, "{report:?}");
 }
