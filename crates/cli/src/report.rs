@@ -21,6 +21,8 @@ pub(crate) struct Report<'a> {
     options: OptionsReport,
     mesh: MeshReport<'a>,
     strips: Vec<StripReport>,
+    /// The length of all open border edges over sqrt(area).
+    open_border: f64,
     points: PointsReport,
     irregularity: Irregularity,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -83,6 +85,7 @@ impl<'a> Report<'a> {
         quality: Option<Quality>,
         seconds: Seconds,
     ) -> Self {
+        let area = mesh.area;
         Self {
             version: env!("CARGO_PKG_VERSION"),
             options: OptionsReport {
@@ -105,6 +108,7 @@ impl<'a> Report<'a> {
                 .iter()
                 .map(|strip| strip_report(strip, options.tolerance * run.d_m))
                 .collect(),
+            open_border: open_border(area, options, run),
             points: PointsReport {
                 count: run.samples.len(),
                 d_m: run.d_m,
@@ -132,6 +136,11 @@ impl<'a> MeshReport<'a> {
             repaired,
         }
     }
+}
+
+/// The length of the border that stays open at a run's d_m, both sides of each cut, over the root of the area.
+pub(crate) fn open_border(area: f64, options: &Options, run: &Run) -> f64 {
+    run.strips.open_border_length(options.tolerance * run.d_m) / area.sqrt()
 }
 
 fn strip_report(strip: &Strip, tolerance: f64) -> StripReport {

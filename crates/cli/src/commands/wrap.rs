@@ -36,7 +36,7 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
         .with_context(|| input.name.clone())?;
     let job = Job { input: &input, density: &density, options: &options };
     let files = write(job, &run, &outputs, &stages)?;
-    for line in summary(&input, &run) {
+    for line in summary(&input, &options, &run) {
         stages.say(&line);
     }
     for file in files {
@@ -83,7 +83,7 @@ fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyh
     outputs.commit()
 }
 
-fn summary(input: &Input, run: &Run) -> Vec<String> {
+fn summary(input: &Input, options: &Options, run: &Run) -> Vec<String> {
     let Input { name, mesh, .. } = input;
     let Irregularity { bound, refined, exact } = run.irregularity;
     let Correction { projected, removed } = run.correction;
@@ -97,6 +97,7 @@ fn summary(input: &Input, run: &Run) -> Vec<String> {
             run.d_m
         ),
         format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact"),
+        format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), options, run)),
         format!("corrected: {projected} projected, {removed} removed"),
     ];
     if let Some(equalize) = &run.equalize {

@@ -142,7 +142,10 @@ fn the_report_has_its_keys() {
         .ok();
     let report = folder.json("r.json");
     let keys = |value: &Value| value.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
-    assert_eq!(keys(&report), ["irregularity", "mesh", "options", "points", "seconds", "strips", "version"]);
+    assert_eq!(
+        keys(&report),
+        ["irregularity", "mesh", "open_border", "options", "points", "seconds", "strips", "version"]
+    );
     assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(
         keys(&report["mesh"]),
@@ -174,6 +177,8 @@ fn the_report_has_its_keys() {
     assert!((sum("area") - OCTAHEDRON_AREA).abs() < 1e-9);
     assert!((number(&report["mesh"]["area"]) - OCTAHEDRON_AREA).abs() < 1e-12);
     assert!(sum("open_border_length") <= sum("border_length"));
+    let open = sum("open_border_length") / OCTAHEDRON_AREA.sqrt();
+    assert!((number(&report["open_border"]) - open).abs() < 1e-9);
     assert!((number(&report["points"]["d_m"]) - (OCTAHEDRON_AREA / 335.0).sqrt()).abs() < 1e-12);
     assert!(number(&report["irregularity"]["exact"]) <= 1.0);
     let seconds = keys(&report["seconds"]);
