@@ -4,11 +4,13 @@ use std::path::Path;
 
 use ldwrap::equalize::EqualizeOptions;
 use ldwrap::io::points::PointFormat;
-use ldwrap::pipeline::{Options, Request};
+use ldwrap::pipeline::{Options, Request, SampleOrder, Selection};
 use ldwrap::segment::SegmentOptions;
 use ldwrap::sequence::Sequence;
 
-use crate::args::{RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs};
+use crate::args::{
+    OrderArg, RequestArgs, SegmentArgs, SelectArg, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs,
+};
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
 
@@ -78,11 +80,24 @@ fn point_format(path: &Path) -> Outcome<PointFormat> {
 
 /// Everything that decides the points.
 pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
-    Ok(Options {
+    let selection = match args.select {
+        SelectArg::Regions => Selection::Regions,
+        SelectArg::Sequence => Selection::Sequence,
+        SelectArg::Extensible => Selection::Extensible,
+    };
+    let equalize = !args.no_equalize && selection != Selection::Extensible;
+    let options = Options {
         request: request(&args.request),
-        equalize: (!args.no_equalize).then(EqualizeOptions::default),
+        selection,
+        equalize: equalize.then(EqualizeOptions::default),
+        order: match args.order {
+            OrderArg::Sequence => SampleOrder::Sequence,
+            OrderArg::Progressive => SampleOrder::Progressive,
+        },
         ..wrap_options(&args.segment, &args.sequence)?
-    })
+    };
+    options.validate().map_err(|error| Failure::wrong_use(error.to_string()))?;
+    Ok(options)
 }
 
 /// How points are wrapped, whatever their number.

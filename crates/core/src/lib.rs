@@ -67,11 +67,14 @@ pub mod pipeline;
 #[cfg(test)]
 mod planted;
 mod progress;
+pub mod progressive;
 mod random;
 mod request;
 mod sample;
 pub mod segment;
+mod selection;
 pub mod sequence;
+mod shares;
 pub mod spatial;
 pub mod unfold;
 pub mod wrap;
