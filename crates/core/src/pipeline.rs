@@ -225,7 +225,7 @@ pub fn run_weighted(
         None => (samples, None),
         Some(options) => {
             stage("equalize")?;
-            let (samples, report) = equalize_samples(mesh, &strips, &domain, samples, options, progress);
+            let (samples, report) = equalize_samples(mesh, density, &strips, &domain, samples, options, progress);
             (samples, Some(report))
         }
     };
@@ -243,6 +243,7 @@ pub fn run_weighted(
 /// Equalizes samples: those that moved lie in the planar domain where their new face lies.
 fn equalize_samples(
     mesh: &SurfaceMesh,
+    density: &Density,
     strips: &Strips,
     domain: &PlanarDomain,
     samples: Vec<Sample>,
@@ -251,7 +252,7 @@ fn equalize_samples(
 ) -> (Vec<Sample>, EqualizeReport) {
     let points: Vec<_> = samples.iter().map(|s| s.point).collect();
     let strip_of_face: Vec<_> = strips.places.iter().map(|p| p.strip).collect();
-    let equalized = equalize(mesh, &points, &strip_of_face, &Density::UNIFORM, options, progress);
+    let equalized = equalize(mesh, &points, &strip_of_face, density, options, progress);
     let samples = equalized.points.into_iter().zip(samples).map(|(point, before)| {
         let (strip, place) = strips.lay_point(&point);
         // What the correction moved stays known: equalizing keeps the order of the points.
