@@ -82,6 +82,10 @@ impl Options {
                 Err(OptionsError::OutOfRange { name, value: value.to_string(), allowed })
             }
         };
+        let for_views = self.equalize.and_then(|equalize| equalize.for_views);
+        if let Some((name, value, allowed)) = for_views.and_then(|views| views.fault()) {
+            return Err(OptionsError::OutOfRange { name, value, allowed });
+        }
         let SegmentOptions { flatness_angle, smallest_share, order: _ } = self.segment;
         let half_turn = std::f64::consts::PI;
         finite(
@@ -225,7 +229,8 @@ pub fn run_weighted(
         None => (samples, None),
         Some(options) => {
             stage("equalize")?;
-            let (samples, report) = equalize_samples(mesh, density, &strips, &domain, samples, options, progress);
+            let (samples, report) =
+                equalize_samples(mesh, density, &strips, &domain, samples, options, progress);
             (samples, Some(report))
         }
     };

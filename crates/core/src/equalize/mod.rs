@@ -11,7 +11,9 @@ mod layout;
 mod near;
 mod normals;
 mod patches;
+mod places;
 mod relax;
+mod spacing;
 mod tiles;
 mod views;
 
@@ -22,7 +24,7 @@ use glam::DVec3;
 
 use crate::density::Density;
 use crate::geometry::triangle;
-use crate::ids::{FaceId, StripId};
+use crate::ids::StripId;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::progress::Progress;
@@ -32,6 +34,7 @@ use diagram::{diagram, owned_tiles};
 use layout::{Due, Layout, Place, lay_out};
 use near::{Near, Site};
 use patches::Patches;
+use places::Spot;
 use relax::{Relaxed, relax};
 use tiles::{Scale, tiles};
 
@@ -131,10 +134,10 @@ pub fn equalize(
     let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
     let relaxed = relax(&layout, start, &wanted, options.rounds, progress);
-    let mut settled = settle(scale.middle, &layout, &relaxed);
-    if let Some(views) = &options.for_views {
-        let chosen = views::choose(mesh, scale.middle, &layout, &relaxed, &settled, views, progress);
-        settled = chosen.unwrap_or(settled);
+    let mut settled = settle(&layout, &relaxed);
+    spacing::make_way(&layout, &relaxed, &mut settled);
+    if let Some(options) = &options.for_views {
+        views::choose(mesh, scale.middle, &layout, &relaxed, &mut settled, options, progress);
     }
     let mut moved = 0.0;
     let mut result = points.to_vec();
@@ -142,9 +145,9 @@ pub fn equalize(
     for ((due, place), cell) in dues.iter().zip(settled).zip(&relaxed.diagram.cells) {
         let slot = due.point as usize;
         cells[slot] = cell.mass;
-        if let Some((face, place)) = place {
+        if let Some(Spot { face, place }) = place {
             let [a, b, c] = mesh.triangle(face);
-            let point = SurfacePoint { face, barycentric: triangle::nearest(a, b, c, place) };
+            let point = SurfacePoint { face, barycentric: triangle::nearest(a, b, c, place + scale.middle) };
             moved += (mesh.locate(&point) - scale.middle).distance_squared(places[slot]);
             result[slot] = point;
         }
@@ -182,9 +185,9 @@ fn items(
     order.into_iter().map(item).collect()
 }
 
-/// The place of each cell's tiles that lies nearest to its centroid, in units of the mesh; `None` for an empty cell.
-fn settle(middle: DVec3, layout: &Layout, relaxed: &Relaxed) -> Vec<Option<(FaceId, DVec3)>> {
-    let mut best: Vec<Option<(f64, FaceId, DVec3)>> = vec![None; relaxed.sites.len()];
+/// The place of each cell's tiles that lies nearest to its centroid; `None` for an empty cell.
+fn settle(layout: &Layout, relaxed: &Relaxed) -> Vec<Option<Spot>> {
+    let mut best: Vec<Option<(f64, Spot)>> = vec![None; relaxed.sites.len()];
     for (site, tile) in owned_tiles(layout, &relaxed.near, &relaxed.sites) {
         let cell = &relaxed.diagram.cells[site as usize];
         if cell.mass <= 0.0 {
@@ -193,14 +196,14 @@ fn settle(middle: DVec3, layout: &Layout, relaxed: &Relaxed) -> Vec<Option<(Face
         let centroid = cell.moment.position / cell.mass;
         let tile = &layout.tiles[tile as usize];
         let [a, b, c] = tile.corners;
-        let nearest = triangle::at(a, b, c, triangle::nearest(a, b, c, centroid));
-        let distance = nearest.distance_squared(centroid);
+        let place = triangle::at(a, b, c, triangle::nearest(a, b, c, centroid));
+        let distance = place.distance_squared(centroid);
         let best = &mut best[site as usize];
         if best.is_none_or(|b| distance < b.0) {
-            *best = Some((distance, tile.face, nearest));
+            *best = Some((distance, Spot { face: tile.face, place }));
         }
     }
-    best.into_iter().map(|best| best.map(|(_, face, place)| (face, place + middle))).collect()
+    best.into_iter().map(|best| best.map(|(_, spot)| spot)).collect()
 }
 
 /// Standard deviation over mean.

@@ -40,7 +40,8 @@ impl Near {
     /// The sites lie in the order of the blocks, so runs of them have small bounds.
     pub(super) fn find(layout: &Layout, sites: &[Site]) -> Self {
         const CHUNK: usize = 64;
-        let runs = Runs::new(sites);
+        let places: Vec<DVec3> = sites.iter().map(|s| s.place.position).collect();
+        let runs = Runs::new(&places);
         let pieces = parallel::map_chunks(layout.blocks.len(), CHUNK, |range| {
             let mut counts = Vec::with_capacity(range.len());
             let mut found = Vec::new();
@@ -50,7 +51,7 @@ impl Near {
                 let mut reach = half.position.length() + (REACH + SLACK) * block.distance;
                 // Every patch with blocks has a site, so this ends.
                 while found.len() == before {
-                    runs.within(middle.position, reach, block.patch, &mut found);
+                    runs.within(middle.position, reach, |i| sites[i].patch == block.patch, &mut found);
                     reach *= 2.0;
                 }
                 counts.push((found.len() - before) as u32);
@@ -71,10 +72,10 @@ impl Near {
     }
 }
 
-/// The bounds of runs of sites, of runs of runs, and so on.
-struct Runs<'a> {
-    sites: &'a [Site],
-    /// From single runs of sites up to a level of at most `FAN`.
+/// The bounds of runs of places, of runs of runs, and so on.
+pub(super) struct Runs<'a> {
+    places: &'a [DVec3],
+    /// From single runs of places up to a level of at most `FAN`.
     levels: Vec<Vec<(DVec3, DVec3)>>,
 }
 
@@ -82,31 +83,41 @@ struct Runs<'a> {
 const FAN: usize = 8;
 
 impl<'a> Runs<'a> {
-    fn new(sites: &'a [Site]) -> Self {
+    pub(super) fn new(places: &'a [DVec3]) -> Self {
         let join = |(low, high): (DVec3, DVec3), (l, h): (DVec3, DVec3)| (low.min(l), high.max(h));
         let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         let mut levels: Vec<Vec<(DVec3, DVec3)>> = Vec::new();
-        let points = sites
-            .chunks(FAN)
-            .map(|run| run.iter().map(|s| (s.place.position, s.place.position)).fold(nothing, join));
-        levels.push(points.collect());
+        levels.push(places.chunks(FAN).map(|run| run.iter().map(|&p| (p, p)).fold(nothing, join)).collect());
         while let Some(last) = levels.last()
             && last.len() > FAN
         {
             levels.push(last.chunks(FAN).map(|run| run.iter().copied().fold(nothing, join)).collect());
         }
-        Self { sites, levels }
+        Self { places, levels }
     }
 
-    /// Adds the sites of the patch within `reach` of `centre`, ascending.
-    fn within(&self, centre: DVec3, reach: f64, patch: u32, found: &mut Vec<u32>) {
+    /// Adds the places within `reach` of `centre` that `keep` lets through, ascending.
+    pub(super) fn within(
+        &self,
+        centre: DVec3,
+        reach: f64,
+        keep: impl Fn(usize) -> bool,
+        found: &mut Vec<u32>,
+    ) {
         let top = self.levels.len() - 1;
         for run in 0..self.levels[top].len() {
-            self.descend(top, run, (centre, reach * reach), patch, found);
+            self.descend(top, run, (centre, reach * reach), &keep, found);
         }
     }
 
-    fn descend(&self, level: usize, run: usize, ball: (DVec3, f64), patch: u32, found: &mut Vec<u32>) {
+    fn descend(
+        &self,
+        level: usize,
+        run: usize,
+        ball: (DVec3, f64),
+        keep: &impl Fn(usize) -> bool,
+        found: &mut Vec<u32>,
+    ) {
         let (low, high) = self.levels[level][run];
         let (centre, squared) = ball;
         if centre.distance_squared(centre.clamp(low, high)) > squared {
@@ -115,13 +126,13 @@ impl<'a> Runs<'a> {
         let first = run * FAN;
         if level > 0 {
             for child in first..(first + FAN).min(self.levels[level - 1].len()) {
-                self.descend(level - 1, child, ball, patch, found);
+                self.descend(level - 1, child, ball, keep, found);
             }
             return;
         }
-        for (i, site) in (first as u32..).zip(&self.sites[first..(first + FAN).min(self.sites.len())]) {
-            if site.patch == patch && site.place.position.distance_squared(centre) <= squared {
-                found.push(i);
+        for i in first..(first + FAN).min(self.places.len()) {
+            if keep(i) && self.places[i].distance_squared(centre) <= squared {
+                found.push(i as u32);
             }
         }
     }

@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::diagram::{Piece, pieces};
 use super::layout::Layout;
+use super::places::{Spot, spots};
 use super::relax::Relaxed;
 use crate::baseline::spherical_fibonacci;
 use crate::ids::FaceId;
@@ -42,28 +42,57 @@ pub enum Cameras {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ForViews {
-    /// Over how many views the error is made small. More views serve unseen ones better; the time is proportional.
-    pub views: u32,
-    /// How many places of its cell each point chooses from.
-    pub places: u32,
-    /// What it costs a point to leave the centroid of its cell: more keeps points evener. Default: 0.4.
-    pub stay: f64,
     /// From where the surface will be looked at. Default: from everywhere.
     pub cameras: Cameras,
+    /// What it costs a point to leave the centroid of its cell: more keeps points evener and serves views less.
+    /// Default: 0.4.
+    pub stay: f64,
+    /// Over how many views the error is made small: more serve unseen ones better, and the time is proportional.
+    /// Default: `None`, 2,048 for 1,500 points and fewer for more points.
+    pub views: Option<u32>,
+    /// From how many places of its cell each point chooses; the time is proportional. Default: `None`, 32 for 1,500
+    /// points and fewer for more points.
+    pub places: Option<u32>,
     /// Turns the cameras. Default: 0.
     pub seed: u64,
 }
 
+impl Default for ForViews {
+    fn default() -> Self {
+        Self { cameras: Cameras::Around, stay: 0.4, views: None, places: None, seed: 0 }
+    }
+}
+
 impl ForViews {
-    /// Views and places for sets of `count` points that take some seconds on a mesh of 100,000 faces.
-    pub fn for_count(count: usize) -> Self {
+    /// Views and places for sets of `count` points: what takes some ten seconds on a mesh of 100,000 faces.
+    fn effort(&self, count: usize) -> (u32, u32) {
         let (views, places) = match count {
             0..=1_500 => (2_048, 32),
-            1_501..=5_000 => (1_024, 12),
+            1_501..=5_000 => (1_024, 16),
             5_001..=30_000 => (512, 8),
             _ => (192, 4),
         };
-        Self { views, places, stay: 0.4, cameras: Cameras::Around, seed: 0 }
+        (self.views.unwrap_or(views).max(1), self.places.unwrap_or(places).max(1))
+    }
+
+    /// What is wrong with it, if anything: the name of the option, its value and what it may be.
+    pub(crate) fn fault(&self) -> Option<(&'static str, String, &'static str)> {
+        if !(self.stay.is_finite() && self.stay >= 0.0) {
+            return Some((
+                "cost of leaving a cell's centroid",
+                self.stay.to_string(),
+                "finite and from 0 up",
+            ));
+        }
+        let Cameras::Cone { toward, angle, distance } = self.cameras else { return None };
+        if !(toward.is_finite() && toward.length_squared() > 0.0) {
+            return Some(("direction of the views", toward.to_string(), "finite and not zero"));
+        }
+        if !(0.0..=PI).contains(&angle) {
+            return Some(("angle of the views", angle.to_string(), "from 0 to pi radians"));
+        }
+        let distance = distance.filter(|d| !(d.is_finite() && *d > 0.0))?;
+        Some(("distance of the views", distance.to_string(), "finite and above 0"))
     }
 }
 
@@ -72,32 +101,32 @@ const SWEEPS: usize = 30;
 
 mod purpose {
     pub(super) const CAMERAS: u64 = 0x66_6f_72_01;
-    pub(super) const PLACES: u64 = 0x66_6f_72_02;
 }
 
 /// Where a point may stand.
 struct Choice {
-    face: FaceId,
-    place: DVec3,
+    spot: Spot,
     /// What standing there costs, besides the views.
     cost: f64,
 }
 
-/// The places chosen, site by site: face and place, in units of the mesh. `own` says where the sites stand now.
-/// `None` when cancelled.
+/// Moves the points of `own`, one for each site, to the places that serve views best; not when cancelled. `middle` is
+/// that of the mesh.
 pub(super) fn choose(
     mesh: &SurfaceMesh,
     middle: DVec3,
     layout: &Layout,
     relaxed: &Relaxed,
-    own: &[Option<(FaceId, DVec3)>],
+    own: &mut [Option<Spot>],
     options: &ForViews,
     progress: &dyn Progress,
-) -> Option<Vec<Option<(FaceId, DVec3)>>> {
-    let choices = choices(middle, layout, relaxed, own, options);
-    let all: Vec<(FaceId, DVec3)> = choices.iter().flatten().map(|c| (c.face, c.place)).collect();
+) {
+    let (views, places) = options.effort(own.len());
+    let choices = choices(layout, relaxed, own, places, options);
+    let all: Vec<(FaceId, DVec3)> =
+        choices.iter().flatten().map(|c| (c.spot.face, c.spot.place + middle)).collect();
     let caster = Caster::new(mesh);
-    let cameras = cameras(mesh, options);
+    let cameras = cameras(mesh, views as usize, options);
     let words = cameras.chunks(64).count();
     progress.begin("views", cameras.len() as u64);
     // One word of views after the other, each for all places.
@@ -115,64 +144,34 @@ pub(super) fn choose(
         seen
     });
     if progress.is_cancelled() {
-        return None;
+        return;
     }
     let rows: Vec<u64> = (0..all.len()).flat_map(|i| seen.iter().map(move |word| word[i])).collect();
     let chosen = descend(&choices, &rows, words, cameras.len(), relaxed);
-    Some(choices.iter().zip(chosen).map(|(c, k)| c.get(k).map(|c| (c.face, c.place))).collect())
+    for ((own, choices), k) in own.iter_mut().zip(&choices).zip(chosen) {
+        *own = choices.get(k).map(|c| c.spot);
+    }
 }
 
-/// For each site where it stands, then places of its cell, each for an equal share of the mass.
+/// For each site where it stands, then places of its cell; without any where there is no cell.
 fn choices(
-    middle: DVec3,
     layout: &Layout,
     relaxed: &Relaxed,
-    own: &[Option<(FaceId, DVec3)>],
+    own: &[Option<Spot>],
+    places: u32,
     options: &ForViews,
 ) -> Vec<Vec<Choice>> {
-    let mut pieces_of: Vec<Vec<Piece>> = vec![Vec::new(); own.len()];
-    for piece in pieces(layout, &relaxed.near, &relaxed.sites) {
-        pieces_of[piece.site as usize].push(piece);
-    }
+    let spots = spots(layout, relaxed, |site| own[site].is_some(), places, options.seed);
     parallel::map(own.len(), |site| {
-        let Some((face, place)) = own[site] else { return Vec::new() };
-        let mut choices = vec![Choice { face, place, cost: 0.0 }];
+        let Some(own) = own[site] else { return Vec::new() };
         let cell = relaxed.diagram.cells[site];
         let (centroid, distance) = (cell.moment.position / cell.mass, relaxed.sites[site].distance);
-        let mut random = Random::new(options.seed ^ site as u64, purpose::PLACES);
-        let step = cell.mass / f64::from(options.places);
-        let (mut passed, mut next) = (0.0, step * random.unit());
-        for piece in &pieces_of[site] {
-            passed += piece.mass;
-            while next < passed {
-                next += step;
-                let tile = &layout.tiles[piece.tile as usize];
-                let place = inside(tile.corners, piece, &mut random);
-                let cost = options.stay * place.distance_squared(centroid) / (distance * distance);
-                choices.push(Choice { face: tile.face, place: place + middle, cost });
-            }
-        }
-        choices
+        let choice = |spot: &Spot| {
+            let away = spot.place.distance_squared(centroid) / (distance * distance);
+            Choice { spot: *spot, cost: options.stay * away }
+        };
+        std::iter::once(&own).chain(&spots[site]).map(choice).collect()
     })
-}
-
-/// A random place of a piece.
-fn inside([a, b, c]: [DVec3; 3], piece: &Piece, random: &mut Random) -> DVec3 {
-    let first = piece.polygon[0];
-    let areas: Vec<f64> =
-        piece.polygon[1..].windows(2).map(|p| (p[0] - first).perp_dot(p[1] - first)).collect();
-    let mut left = random.unit() * areas.iter().sum::<f64>();
-    let mut k = 0;
-    while k + 1 < areas.len() && left >= areas[k] {
-        left -= areas[k];
-        k += 1;
-    }
-    let (mut u, mut v) = (random.unit(), random.unit());
-    if u + v > 1.0 {
-        (u, v) = (1.0 - u, 1.0 - v);
-    }
-    let at = first + (piece.polygon[k + 1] - first) * u + (piece.polygon[k + 2] - first) * v;
-    a + (b - a) * at.x + (c - a) * at.y
 }
 
 /// Which choice each site takes.
@@ -246,10 +245,9 @@ fn for_views(row: &[u64], mut call: impl FnMut(usize)) {
     }
 }
 
-fn cameras(mesh: &SurfaceMesh, options: &ForViews) -> Vec<Camera> {
+fn cameras(mesh: &SurfaceMesh, count: usize, options: &ForViews) -> Vec<Camera> {
     let (low, high) = mesh.bounds();
     let (middle, radius) = ((low + high) * 0.5, 0.5 * low.distance(high));
-    let count = options.views.max(1) as usize;
     let mut random = Random::new(options.seed, purpose::CAMERAS);
     let camera = |toward: DVec3, distance: Option<f64>| match distance {
         None => Camera::Orthographic { toward },
