@@ -48,6 +48,8 @@ pub(crate) enum Command {
     Plane(PlaneArgs),
     /// Tell into how many parts figures fall when unfolded, and the paper's bounds (eq. 6 and 7)
     Bound(BoundArgs),
+    /// Show a mesh, its strips, points and what a view sees in a window; needs the program ldwrap-web
+    View(ViewArgs),
     /// Print the completions of a shell
     #[command(hide = true)]
     Completions {
@@ -488,6 +490,13 @@ pub(crate) struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// The mesh: a PLY, OBJ, STL, glTF, GLB or OFF file
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
 }
 
 fn point_formats() -> impl TypedValueParser<Value = PointFormat> {

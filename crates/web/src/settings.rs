@@ -121,6 +121,9 @@ pub struct Link {
     pub shape: String,
     /// The settings.
     pub settings: Settings,
+    /// Those of B, when two are compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other: Option<Settings>,
 }
 
 impl Link {
@@ -150,10 +153,12 @@ mod tests {
             method: Method::Paper,
             ..Settings::default()
         };
-        let link = Link { shape: "cup".into(), settings };
-        let fragment = link.fragment();
-        assert!(fragment.chars().all(|c| c.is_ascii_alphanumeric() || c == '%'), "{fragment}");
-        assert_eq!(Link::from_fragment(&format!("#{fragment}")), Some(link));
+        for other in [None, Some(Settings { method: Method::Hilbert, ..Settings::default() })] {
+            let link = Link { shape: "cup".into(), settings: settings.clone(), other };
+            let fragment = link.fragment();
+            assert!(fragment.chars().all(|c| c.is_ascii_alphanumeric() || c == '%'), "{fragment}");
+            assert_eq!(Link::from_fragment(&format!("#{fragment}")), Some(link));
+        }
         assert_eq!(Link::from_fragment("#nonsense"), None);
     }
 

@@ -8,5 +8,6 @@ mod outputs;
 mod plane;
 mod repairs;
 mod shape;
+mod view;
 mod wrap;
 mod wrong_use;
