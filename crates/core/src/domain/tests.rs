@@ -1,3 +1,5 @@
+//! Points near the strips against the list of all, and strips that are very narrow.
+
 use glam::DVec3;
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! The least open border, on surfaces whose best unfolding is known and against the orders that are tried.
+
 use super::*;
 use crate::planted;
 use crate::shapes::{self, Shape};
