@@ -208,6 +208,8 @@ pub(crate) struct WrapArgs {
     /// Leave the points where wrapping puts them, instead of evening out the area each stands for
     #[arg(long)]
     pub(crate) no_equalize: bool,
+    #[command(flatten)]
+    pub(crate) views: ForViewsArgs,
     /// Which of the wrapped points are taken
     #[arg(long, value_enum, value_name = "HOW", default_value = "regions")]
     pub(crate) select: SelectArg,
@@ -218,6 +220,35 @@ pub(crate) struct WrapArgs {
     pub(crate) weights: WeightsArgs,
     #[command(flatten)]
     pub(crate) outputs: WrapOutputArgs,
+}
+
+/// Points that tell the visible share.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Views")]
+pub(crate) struct ForViewsArgs {
+    /// Let each point take the place in its cell that makes the visible share of the points tell that of the surface
+    /// best, over many views; takes some seconds and costs a little evenness
+    #[arg(long, conflicts_with = "no_equalize")]
+    pub(crate) for_views: bool,
+    /// The views to serve come from around this direction, from the mesh to the camera [default: from everywhere]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        requires = "for_views",
+        value_delimiter = ',',
+        num_args = 3,
+        allow_negative_numbers = true
+    )]
+    pub(crate) view_from: Option<Vec<f64>>,
+    /// They come from within this many degrees of it
+    #[arg(long, value_name = "DEGREES", requires = "view_from", default_value = "30")]
+    pub(crate) view_angle: f64,
+    /// Cameras stand this far from the middle of the mesh, in its units [default: infinitely far]
+    #[arg(long, value_name = "LENGTH", requires = "view_from")]
+    pub(crate) view_distance: Option<f64>,
+    /// How many views are served [default: by the number of points]
+    #[arg(long, value_name = "VIEWS", requires = "for_views", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) views: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -354,7 +385,7 @@ pub(crate) struct CompareArgs {
     #[arg(short = 'n', long = "count", value_name = "N,...", value_delimiter = ',', default_value = "56,335,1000",
         value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) counts: Vec<u32>,
-    /// The methods [default: all that work on the mesh]
+    /// The methods [default: all that work on the mesh but for-views, which takes seconds]
     #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) methods: Option<Vec<Method>>,
     /// How many seeds, from --seed on; more than one give the spread

@@ -1,7 +1,7 @@
 //! The report of a run as JSON. Its keys and units are documented in this crate's README and stay as they are.
 
 use ldwrap::density::Density;
-use ldwrap::equalize::EqualizeReport;
+use ldwrap::equalize::{EqualizeOptions, EqualizeReport};
 use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{Options, Request, Run, SampleOrder, Selection};
 use ldwrap::segment::GrowthOrder;
@@ -42,7 +42,7 @@ struct OptionsReport {
     smallest_share: f64,
     growth: GrowthOrder,
     selection: Selection,
-    equalize: bool,
+    equalize: Option<EqualizeOptions>,
     order: SampleOrder,
     /// Whether weights were given.
     weighted: bool,
@@ -97,7 +97,7 @@ impl<'a> Report<'a> {
                 smallest_share: options.segment.smallest_share,
                 growth: options.segment.order,
                 selection: options.selection,
-                equalize: options.equalize.is_some(),
+                equalize: options.equalize,
                 order: options.order,
                 weighted: !density.is_uniform(),
             },

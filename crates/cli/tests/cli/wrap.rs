@@ -164,7 +164,7 @@ fn the_report_has_its_keys() {
             "smallest_share": 0.002,
             "growth": "least-open",
             "selection": "regions",
-            "equalize": false,
+            "equalize": null,
             "order": "sequence",
             "weighted": false,
         })
@@ -192,7 +192,7 @@ fn the_report_has_its_keys() {
 fn equalizing_is_on_and_reported() {
     let folder = Folder::with_octahedron();
     let report = folder.run("wrap octahedron.obj -n 100 --report - -q").ok().json();
-    assert_eq!(report["options"]["equalize"], true);
+    assert_eq!(report["options"]["equalize"]["rounds"], 6);
     let spread = |key: &str| report["equalize"][key].as_f64().expect("a number");
     assert!(spread("spread_after") < spread("spread_before"));
     assert!(spread("moved") > 0.0);
@@ -305,4 +305,36 @@ fn the_horse() {
     assert!(strips.len() <= 28, "{} strips", strips.len());
     let largest = strips.iter().map(|s| s["faces"].as_u64().expect("a count")).max();
     assert!(largest >= Some(93_754), "{largest:?}");
+}
+
+#[test]
+fn points_for_views_are_made_and_reported() {
+    let folder = Folder::with_octahedron();
+    let run =
+        |options: &str| folder.run(&format!("wrap octahedron.obj -n 40 --report - -q {options}")).ok().json();
+    let everywhere = run("--for-views --views 64");
+    assert_eq!(everywhere["options"]["equalize"]["for_views"]["cameras"], "around");
+    let cone = run("--for-views --views 64 --view-from 0,-1,2 --view-angle 20 --view-distance 5");
+    assert_eq!(cone["options"]["equalize"]["for_views"]["cameras"]["cone"]["distance"], 5.0);
+    assert!(run("")["options"]["equalize"]["for_views"].is_null());
+}
+
+#[test]
+fn what_makes_no_sense_for_views_is_refused() {
+    let folder = Folder::with_octahedron();
+    for options in [
+        "--for-views --no-equalize",
+        "--views 10",
+        "--view-from 0,0,1",
+        "--for-views --view-from 0,0",
+        "--for-views --view-from 0,0,0",
+        "--for-views --view-from 0,nan,1",
+        "--for-views --view-from 0,0,1 --view-angle 181",
+        "--for-views --view-from 0,0,1 --view-distance 0",
+        "--for-views --views 0",
+        "--for-views --select extensible --sequence halton",
+    ] {
+        let ran = folder.run(&format!("wrap octahedron.obj -n 10 {options}"));
+        assert_eq!(ran.code, 2, "{options}: {}", ran.stderr);
+    }
 }
