@@ -3,13 +3,17 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use ldwrap::equalize::EqualizeOptions;
+use glam::DVec3;
+use ldwrap::equalize::{Cameras, EqualizeOptions, ForViews};
 use ldwrap::io::points::PointFormat;
-use ldwrap::pipeline::{Options, Request};
+use ldwrap::pipeline::{Options, Request, SampleOrder, Selection};
 use ldwrap::segment::SegmentOptions;
 use ldwrap::sequence::Sequence;
 
-use crate::args::{RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs};
+use crate::args::{
+    ForViewsArgs, OrderArg, RequestArgs, SegmentArgs, SelectArg, SequenceArg, SequenceArgs, WrapArgs,
+    WrapOutputArgs,
+};
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
 
@@ -79,11 +83,40 @@ fn point_format(path: &Path) -> Outcome<PointFormat> {
 
 /// Everything that decides the points.
 pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
-    Ok(Options {
+    let selection = match args.select {
+        SelectArg::Regions => Selection::Regions,
+        SelectArg::Sequence => Selection::Sequence,
+        SelectArg::Extensible => Selection::Extensible,
+    };
+    if args.views.for_views && selection == Selection::Extensible {
+        return Err(Failure::wrong_use("--for-views moves points, so extensible points cannot be for views"));
+    }
+    let equalize = !args.no_equalize && selection != Selection::Extensible;
+    let options = Options {
         request: request(&args.request),
-        equalize: (!args.no_equalize).then(EqualizeOptions::default),
+        selection,
+        equalize: equalize
+            .then(|| EqualizeOptions { for_views: for_views(&args.views), ..EqualizeOptions::default() }),
+        order: match args.order {
+            OrderArg::Sequence => SampleOrder::Sequence,
+            OrderArg::Progressive => SampleOrder::Progressive,
+        },
         ..wrap_options(&args.segment, &args.sequence)?
-    })
+    };
+    options.validate().map_err(|error| Failure::wrong_use(error.to_string()))?;
+    Ok(options)
+}
+
+fn for_views(args: &ForViewsArgs) -> Option<ForViews> {
+    let cameras = match args.view_from.as_deref() {
+        Some(&[x, y, z]) => Cameras::Cone {
+            toward: DVec3::new(x, y, z),
+            angle: args.view_angle.to_radians(),
+            distance: args.view_distance,
+        },
+        _ => Cameras::Around,
+    };
+    args.for_views.then(|| ForViews { cameras, views: args.views, ..ForViews::default() })
 }
 
 /// How points are wrapped, whatever their number.

@@ -66,7 +66,7 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
         return Err(Failure::wrong_use("--plot: stdout is for the table; name a file"));
     }
     let stages = Stages::new(quiet);
-    let Input { name, mesh, repaired } = input::read(&args.mesh, &stages)?;
+    let Input { name, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
     for note in input::notes(&repaired) {
         stages.say(&format!("note: {name}: {note}"));
     }
@@ -137,7 +137,9 @@ fn file_name(name: &str) -> String {
 /// Those that were asked for; else all that work on the mesh.
 fn methods(args: &CompareArgs, mesh: &SurfaceMesh, name: &str) -> Outcome<Vec<Method>> {
     let Some(asked) = &args.methods else {
-        return Ok(Method::ALL.into_iter().filter(|method| method.suits(mesh)).collect());
+        // Placing for views takes longer than all others together.
+        let quick = |method: &Method| *method != Method::ForViews && method.suits(mesh);
+        return Ok(Method::ALL.into_iter().filter(quick).collect());
     };
     match asked.iter().find(|method| !method.suits(mesh)) {
         Some(method) => Err(Failure::wrong_use(format!(
