@@ -22,7 +22,7 @@ pub fn progressive(mesh: &SurfaceMesh, points: &[SurfacePoint]) -> Vec<usize> {
         points.iter().enumerate().map(|(i, p)| (mesh.locate(p), i)).collect();
     let mut parts = Vec::new();
     cut(&mut items, &mut parts);
-    let orders = parallel::map(parts.len(), |p| greedy(&parts[p]));
+    let orders = parallel::map(parts.len(), |p| greedy(parts[p]));
     let count = parts.len() as u64;
     let mut merged: Vec<(f64, u64, usize)> = Vec::with_capacity(points.len());
     for (p, (part, order)) in (0u64..).zip(parts.iter().zip(orders)) {
