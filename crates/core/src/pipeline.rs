@@ -82,6 +82,10 @@ impl Options {
                 Err(OptionsError::OutOfRange { name, value: value.to_string(), allowed })
             }
         };
+        let for_views = self.equalize.and_then(|equalize| equalize.for_views);
+        if let Some((name, value, allowed)) = for_views.and_then(|views| views.fault()) {
+            return Err(OptionsError::OutOfRange { name, value, allowed });
+        }
         let SegmentOptions { flatness_angle, smallest_share, order: _ } = self.segment;
         let half_turn = std::f64::consts::PI;
         finite(
@@ -225,7 +229,8 @@ pub fn run_weighted(
         None => (samples, None),
         Some(options) => {
             stage("equalize")?;
-            let (samples, report) = equalize_samples(mesh, &strips, &domain, samples, options, progress);
+            let (samples, report) =
+                equalize_samples(mesh, density, &strips, &domain, samples, options, progress);
             (samples, Some(report))
         }
     };
@@ -243,6 +248,7 @@ pub fn run_weighted(
 /// Equalizes samples: those that moved lie in the planar domain where their new face lies.
 fn equalize_samples(
     mesh: &SurfaceMesh,
+    density: &Density,
     strips: &Strips,
     domain: &PlanarDomain,
     samples: Vec<Sample>,
@@ -251,7 +257,7 @@ fn equalize_samples(
 ) -> (Vec<Sample>, EqualizeReport) {
     let points: Vec<_> = samples.iter().map(|s| s.point).collect();
     let strip_of_face: Vec<_> = strips.places.iter().map(|p| p.strip).collect();
-    let equalized = equalize(mesh, &points, &strip_of_face, options, progress);
+    let equalized = equalize(mesh, &points, &strip_of_face, density, options, progress);
     let samples = equalized.points.into_iter().zip(samples).map(|(point, before)| {
         let (strip, place) = strips.lay_point(&point);
         // What the correction moved stays known: equalizing keeps the order of the points.

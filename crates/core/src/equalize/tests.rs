@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{EqualizeOptions, Equalized, equalize};
 use crate::baseline;
+use crate::density::Density;
 use crate::ids::StripId;
 use crate::mesh::{CheckOptions, PolygonSoup, SurfaceMesh, shapes};
 use crate::progress::Silent;
@@ -15,7 +16,8 @@ fn mesh(soup: &PolygonSoup) -> SurfaceMesh {
 
 fn equalized(mesh: &SurfaceMesh, points: &[SurfacePoint], rounds: u32) -> Equalized {
     let strips = vec![StripId(0); mesh.face_count()];
-    equalize(mesh, points, &strips, &EqualizeOptions { rounds, ..EqualizeOptions::default() }, &Silent)
+    let options = EqualizeOptions { rounds, ..EqualizeOptions::default() };
+    equalize(mesh, points, &strips, &Density::UNIFORM, &options, &Silent)
 }
 
 fn worst_share(cells: &[f64]) -> f64 {
