@@ -10,9 +10,9 @@ use ldwrap::{Progress, SurfaceMesh, SurfacePoint};
 /// A way to make points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Method {
-    /// The paper's method: segment, unfold, wrap, correct
+    /// Segment, unfold, wrap, correct, and choose one point in each region of equal area
     Wrap,
-    /// The paper's method, then equalized
+    /// The same, then equalized
     Equalize,
     /// Equalized, then placed for views
     ForViews,

@@ -67,30 +67,29 @@ impl Regions {
         for (items, start) in items.iter_mut().zip(&starts) {
             cut(items, *start);
         }
-        let mut regions = Self { along: vec![0.0..0.0; mesh.face_count()], centroids: vec![DVec3::ZERO; n] };
-        let mut masses = vec![0.0; n];
+        let last = n - 1;
+        let mut along = vec![0.0..0.0; mesh.face_count()];
+        // The moments and masses of the regions.
+        let mut sums = vec![(DVec3::ZERO, 0.0); n];
         for (items, start) in items.iter().zip(starts) {
             let mut before = start;
             for item in items {
                 let range = before..before + item.mass;
                 before = range.end;
-                for region in regions.region_at(range.start)..=regions.region_at(range.end) {
-                    let shared = range.end.min(region as f64 + 1.0) - range.start.max(region as f64);
-                    let from = range.start.max(region as f64) - range.start;
+                let (first, end) = ((range.start as usize).min(last), (range.end as usize).min(last) + 1);
+                for (region, sum) in (first..end).zip(&mut sums[first..end]) {
+                    let from = range.start.max(region as f64);
+                    let shared = (range.end.min(region as f64 + 1.0) - from).max(0.0);
                     let mass = item.mass.max(f64::MIN_POSITIVE);
-                    let position = band_middle(mesh, item.face, from / mass..(from + shared) / mass);
-                    regions.centroids[region] += position * shared.max(0.0);
-                    masses[region] += shared.max(0.0);
+                    let from = (from - range.start) / mass;
+                    sum.0 += band_middle(mesh, item.face, from..from + shared / mass) * shared;
+                    sum.1 += shared;
                 }
-                regions.along[item.face.index()] = range;
+                along[item.face.index()] = range;
             }
         }
-        for (centroid, mass) in regions.centroids.iter_mut().zip(masses) {
-            if mass > 0.0 {
-                *centroid /= mass;
-            }
-        }
-        regions
+        let middle = |(moment, mass): (DVec3, f64)| if mass > 0.0 { moment / mass } else { moment };
+        Self { along, centroids: sums.into_iter().map(middle).collect() }
     }
 
     fn region_at(&self, along: f64) -> usize {

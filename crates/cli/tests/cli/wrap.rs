@@ -213,6 +213,9 @@ fn weights_move_points_to_where_they_are() {
     };
     assert!((49..=51).contains(&count("--weights faces.csv")));
     assert!((49..=51).contains(&count("--weights faces.csv --weights-of faces")));
+    let ran = folder.run("wrap octahedron.obj -n 100 --weights faces.csv -o - --format xyz").ok();
+    let equalized = rows(ran.text()).iter().filter(|p| p[0] > 0.0 && p[1] > 0.0 && p[2] > 0.0).count();
+    assert!((48..=52).contains(&equalized), "{equalized}");
     // All weight at one vertex: its four faces get everything.
     folder.write("vertices.txt", "0\n0\n0\n0\n1\n0\n");
     let ran =
