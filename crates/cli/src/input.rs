@@ -14,6 +14,8 @@ use crate::args::{MeshArgs, MeshFormatArg};
 pub(crate) struct Input {
     /// What messages call it.
     pub(crate) name: String,
+    /// As the file gives it.
+    pub(crate) soup: PolygonSoup,
     pub(crate) mesh: SurfaceMesh,
     pub(crate) repaired: RepairReport,
 }
@@ -35,7 +37,7 @@ pub(crate) fn read(args: &MeshArgs, progress: &dyn Progress) -> anyhow::Result<I
     progress.begin("check", 1);
     let options = CheckOptions { turn_outward: !args.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
-    Ok(Input { name, mesh, repaired })
+    Ok(Input { name, soup, mesh, repaired })
 }
 
 fn read_as(format: MeshFormatArg, bytes: &[u8], resolver: &Resolver<'_>) -> Result<PolygonSoup, ReadError> {

@@ -14,6 +14,7 @@ mod progress;
 mod quality;
 mod report;
 mod table;
+mod weights;
 
 use std::process::ExitCode;
 

@@ -53,6 +53,7 @@
 
 pub mod baseline;
 pub mod correct;
+pub mod density;
 pub mod domain;
 pub mod equalize;
 pub mod geometry;
@@ -66,11 +67,14 @@ pub mod pipeline;
 #[cfg(test)]
 mod planted;
 mod progress;
+pub mod progressive;
 mod random;
 mod request;
 mod sample;
 pub mod segment;
+mod selection;
 pub mod sequence;
+mod shares;
 pub mod spatial;
 pub mod unfold;
 pub mod wrap;

@@ -1,7 +1,7 @@
 //! What a person sets: the library's options in a person's units, with a method; as JSON and as a link.
 
 use ldwrap::equalize::EqualizeOptions;
-use ldwrap::pipeline::{Options, Request};
+use ldwrap::pipeline::{Options, Request, Selection};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::sequence::Sequence;
 use serde::{Deserialize, Serialize};
@@ -65,7 +65,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        let Options { request, segment, sequence, seed, tolerance, equalize: _ } = Options::default();
+        let Options { request, segment, sequence, seed, tolerance, .. } = Options::default();
         Self {
             request,
             method: Method::default(),
@@ -98,8 +98,10 @@ impl Settings {
             },
             sequence: self.sequence,
             seed: self.seed,
+            selection: if paper { Selection::Sequence } else { Selection::Regions },
             tolerance: self.tolerance,
             equalize: self.equalizes().then(EqualizeOptions::default),
+            ..Options::default()
         }
     }
 
@@ -176,7 +178,7 @@ mod tests {
         let settings = Settings { method: Method::Paper, equalize: true, ..Settings::default() };
         let options = settings.options();
         assert_eq!(options.segment.order, GrowthOrder::BoundaryWalk);
-        assert_eq!(options.equalize, None);
+        assert_eq!((options.equalize, options.selection), (None, Selection::Sequence));
     }
 
     #[test]

@@ -43,6 +43,9 @@ fn numbers_are_checked() {
         "--sequence hammersley --bases 2,3",
         "--sequence sobol --bases 2",
         "--sequence nonsense",
+        "--select nonsense",
+        "--order nonsense",
+        "--sequence halton --bases 2,1025",
         "--growth nonsense",
         "--format nonsense -o x.ply",
     ] {

@@ -171,6 +171,7 @@ fn settings(ui: &mut egui::Ui, settings: &mut Settings, slot: Slot) {
         slider(ui, "Flatness angle", Slider::new(&mut settings.flatness_angle, 0.0..=180.0).suffix("°"));
         ui.add_enabled_ui(wraps, |ui| {
             let orders = [
+                (GrowthOrder::LeastOpen, "least open border"),
                 (GrowthOrder::FlattestFirst, "flattest first"),
                 (GrowthOrder::BoundaryWalk, "along the boundary"),
                 (GrowthOrder::LongestFirst, "longest first"),
