@@ -42,7 +42,9 @@ fn view(ui: &mut egui::Ui, model: &Model) {
                 if model.comparing { format!("points of {}", slot.name()) } else { "visible points".into() };
             ui.label(name);
             ui.strong(percent(points));
-            ui.label(format!("{:+.1} %", 100.0 * (points - look.surface)));
+            // Adding zero makes -0 a 0.
+            let tenths = (1000.0 * (points - look.surface)).round() + 0.0;
+            ui.label(format!("{:+.1} %", 0.1 * tenths));
             ui.end_row();
         }
     });
