@@ -26,7 +26,7 @@ pub(crate) fn run(args: &BoundArgs, quiet: bool) -> Outcome {
     let options = job::wrap_options(&args.segment, &args.sequence)?;
     job::refuse_repeated("--count", &args.counts, u32::to_string)?;
     let stages = Stages::new(quiet);
-    let Input { name, mesh, repaired } = input::read(&args.mesh, &stages)?;
+    let Input { name, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
     for note in input::notes(&repaired) {
         stages.say(&format!("note: {name}: {note}"));
     }

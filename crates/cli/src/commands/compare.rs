@@ -64,7 +64,7 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
         return Err(Failure::wrong_use("--plot: stdout is for the table; name a file"));
     }
     let stages = Stages::new(quiet);
-    let Input { name, mesh, repaired } = input::read(&args.mesh, &stages)?;
+    let Input { name, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
     for note in input::notes(&repaired) {
         stages.say(&format!("note: {name}: {note}"));
     }

@@ -24,7 +24,7 @@ struct InfoReport<'a> {
 /// Runs the command.
 pub(crate) fn run(args: &InfoArgs, quiet: bool) -> Outcome {
     let stages = Stages::new(quiet);
-    let Input { name, mesh, repaired } = input::read(&args.mesh, &stages)?;
+    let Input { name, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
     stages.finish();
     let edges = mesh.topology().edge_count();
     let (low, high) = mesh.bounds();

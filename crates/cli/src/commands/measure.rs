@@ -46,7 +46,7 @@ pub(crate) fn run(args: &MeasureArgs, quiet: bool) -> Outcome {
     }
     let format = args.points_format;
     let stages = Stages::new(quiet);
-    let Input { name, mesh, repaired } = input::read(&args.mesh, &stages)?;
+    let Input { name, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
     for note in input::notes(&repaired) {
         stages.say(&format!("note: {name}: {note}"));
     }

@@ -23,7 +23,7 @@ pub(crate) fn run(args: &StripsArgs, quiet: bool) -> Outcome {
     let destination = targets.add("--output", &args.output);
     targets.check(Some(&args.mesh.mesh))?;
     let stages = Stages::new(quiet);
-    let Input { name, mesh, repaired } = input::read(&args.mesh, &stages)?;
+    let Input { name, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
     for note in input::notes(&repaired) {
         stages.say(&format!("note: {name}: {note}"));
     }

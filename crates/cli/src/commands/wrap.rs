@@ -25,7 +25,8 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     let options = job::options(args)?;
     let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
     let stages = Stages::new(quiet);
-    let input = input::read(&args.mesh, &stages)?;
+    let detail = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
+    let input = input::read_detail(&args.mesh, detail, &stages)?;
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
@@ -62,7 +63,7 @@ fn write(
     }
     if let Some(wanted) = &wanted.points {
         stages.begin("write", 0);
-        outputs.stage(&wanted.destination, points::bytes(mesh, &run.samples, wanted.format)?)?;
+        outputs.stage(&wanted.destination, points::bytes(input, &run.samples, wanted)?)?;
     }
     let quality = wanted.quality.then(|| {
         let points: Vec<SurfacePoint> = run.samples.iter().map(|sample| sample.point).collect();
