@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket, client};
 
 /// How long anything may take before the test fails. Software rendering on a busy machine is slow.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// What a page looks like to a person.
 #[derive(Clone, Copy)]
@@ -20,10 +20,12 @@ pub(crate) struct Screen {
     pub(crate) height: u32,
     pub(crate) dark: bool,
     pub(crate) phone: bool,
+    /// Pixels of the screen in one of the page's; 2 is a page at 200 %, or a phone.
+    pub(crate) scale: u32,
 }
 
 /// A desktop in light colours.
-pub(crate) const DESKTOP: Screen = Screen { width: 1400, height: 860, dark: false, phone: false };
+pub(crate) const DESKTOP: Screen = Screen { width: 1400, height: 860, dark: false, phone: false, scale: 1 };
 
 /// A browser with one page.
 pub(crate) struct Chrome {
@@ -33,6 +35,7 @@ pub(crate) struct Chrome {
     session: String,
     calls: u64,
     problems: Vec<String>,
+    workers: Vec<String>,
 }
 
 impl Chrome {
@@ -55,8 +58,15 @@ impl Chrome {
         stream.set_read_timeout(Some(PATIENCE)).expect("a socket with a time limit");
         let (socket, _) =
             client(format!("ws://{}{}", address.0, address.1), stream).expect("the DevTools socket");
-        let mut chrome =
-            Self { process, folder, socket, session: String::new(), calls: 0, problems: Vec::new() };
+        let mut chrome = Self {
+            process,
+            folder,
+            socket,
+            session: String::new(),
+            calls: 0,
+            problems: Vec::new(),
+            workers: Vec::new(),
+        };
         let target = chrome.call("Target.createTarget", json!({"url": "about:blank"}));
         let attached =
             chrome.call("Target.attachToTarget", json!({"targetId": target["targetId"], "flatten": true}));
@@ -64,8 +74,8 @@ impl Chrome {
         for domain in ["Page.enable", "Runtime.enable", "Log.enable"] {
             chrome.call(domain, json!({}));
         }
-        let Screen { width, height, dark, phone } = screen;
-        let metrics = json!({"width": width, "height": height, "deviceScaleFactor": if phone { 2 } else { 1 }, "mobile": phone});
+        let Screen { width, height, dark, phone, scale } = screen;
+        let metrics = json!({"width": width, "height": height, "deviceScaleFactor": scale, "mobile": phone});
         chrome.call("Emulation.setDeviceMetricsOverride", metrics);
         let scheme = json!([{"name": "prefers-color-scheme", "value": if dark { "dark" } else { "light" }}]);
         chrome.call("Emulation.setEmulatedMedia", json!({"features": scheme}));
@@ -98,6 +108,9 @@ impl Chrome {
         let message: Value = serde_json::from_str(text.to_text().unwrap_or("{}")).unwrap_or_default();
         let params = &message["params"];
         match message["method"].as_str() {
+            Some("Target.attachedToTarget") if params["targetInfo"]["type"] == "worker" => {
+                self.workers.push(params["sessionId"].as_str().unwrap_or_default().to_owned());
+            }
             Some("Runtime.exceptionThrown") => self.problems.push(params["exceptionDetails"].to_string()),
             Some("Runtime.consoleAPICalled") if params["type"] == "error" => {
                 self.problems.push(params["args"].to_string())
@@ -108,6 +121,22 @@ impl Chrome {
             _ => {}
         }
         message
+    }
+
+    /// Breaks the page's workers as a defect in them would: with an error that nobody catches.
+    pub(crate) fn break_workers(&mut self) {
+        let attach = json!({"autoAttach": true, "waitForDebuggerOnStart": false, "flatten": true});
+        self.call("Target.setAutoAttach", attach);
+        let start = Instant::now();
+        while self.workers.is_empty() {
+            assert!(start.elapsed() < PATIENCE, "no worker");
+            self.evaluate("0");
+        }
+        for worker in std::mem::take(&mut self.workers) {
+            let page = std::mem::replace(&mut self.session, worker);
+            self.evaluate("void setTimeout(() => { throw new Error('broken by the test') })");
+            self.session = page;
+        }
     }
 
     /// Errors that the page has reported so far.
@@ -200,6 +229,12 @@ impl Chrome {
             "[...document.querySelectorAll('#mirror > div')].find(e => e.ariaLabel === {}).click()",
             json!(name)
         ));
+    }
+
+    /// Turns the wheel.
+    pub(crate) fn scroll(&mut self, (x, y): (f64, f64), by: f64) {
+        let params = json!({"type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": by});
+        self.call("Input.dispatchMouseEvent", params);
     }
 
     /// Presses a key, by the names of its meaning and of its place in the DOM.

@@ -4,14 +4,17 @@ use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// A running server; it ends with the process.
+/// A running server; it ends with the process, or when it is told to stop.
 #[derive(Debug)]
 pub struct Server {
     address: SocketAddr,
     thread: JoinHandle<()>,
+    stopped: Arc<AtomicBool>,
 }
 
 impl Server {
@@ -23,19 +26,32 @@ impl Server {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
         let address = listener.local_addr()?;
         let folder = folder.to_owned();
+        let stopped = Arc::new(AtomicBool::new(false));
+        let stop = Arc::clone(&stopped);
         let thread = std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
-                let folder = folder.clone();
+                if stop.load(Ordering::Relaxed) {
+                    return;
+                }
+                let (folder, stop) = (folder.clone(), Arc::clone(&stop));
                 // A broken connection concerns only the client that broke it.
-                std::thread::spawn(move || answer(stream, &folder));
+                std::thread::spawn(move || answer(stream, &folder, &stop));
             }
         });
-        Ok(Self { address, thread })
+        Ok(Self { address, thread, stopped })
     }
 
     /// The address of the start page.
     pub fn address(&self) -> String {
         format!("http://{}/", self.address)
+    }
+
+    /// Stops: no further request is answered.
+    pub fn stop(self) {
+        self.stopped.store(true, Ordering::Relaxed);
+        // It wakes up for one more connection; when it has ended already there is nothing to wake.
+        drop(TcpStream::connect(self.address));
+        self.wait();
     }
 
     /// Waits until the process is ended.
@@ -45,7 +61,7 @@ impl Server {
     }
 }
 
-fn answer(stream: TcpStream, folder: &Path) -> std::io::Result<()> {
+fn answer(stream: TcpStream, folder: &Path, stopped: &AtomicBool) -> std::io::Result<()> {
     stream.set_read_timeout(Some(Duration::from_secs(30)))?;
     let mut reader = BufReader::new(stream.try_clone()?);
     let mut stream = stream;
@@ -57,6 +73,9 @@ fn answer(stream: TcpStream, folder: &Path) -> std::io::Result<()> {
         let mut header = String::new();
         while reader.read_line(&mut header)? > 2 {
             header.clear();
+        }
+        if stopped.load(Ordering::Relaxed) {
+            return Ok(());
         }
         let mut words = request.split(' ');
         let (method, target) = (words.next().unwrap_or(""), words.next().unwrap_or("/"));

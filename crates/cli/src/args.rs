@@ -48,6 +48,8 @@ pub(crate) enum Command {
     Plane(PlaneArgs),
     /// Tell into how many parts figures fall when unfolded, and the paper's bounds (eq. 6 and 7)
     Bound(BoundArgs),
+    /// Show a mesh, its strips, points and what a view sees in a window; needs the program ldwrap-web
+    View(ViewArgs),
     /// Print the completions of a shell
     #[command(hide = true)]
     Completions {
@@ -122,6 +124,8 @@ pub(crate) struct SegmentArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum GrowthArg {
+    /// What opens the least border in the plane first; several ways are tried
+    LeastOpen,
     /// The paper's: along the boundary, first in, first out
     BoundaryWalk,
     /// The smallest angle between the normals first
@@ -133,6 +137,7 @@ pub(crate) enum GrowthArg {
 impl From<GrowthOrder> for GrowthArg {
     fn from(order: GrowthOrder) -> Self {
         match order {
+            GrowthOrder::LeastOpen => Self::LeastOpen,
             GrowthOrder::BoundaryWalk => Self::BoundaryWalk,
             GrowthOrder::FlattestFirst => Self::FlattestFirst,
             GrowthOrder::LongestFirst => Self::LongestFirst,
@@ -143,6 +148,7 @@ impl From<GrowthOrder> for GrowthArg {
 impl From<GrowthArg> for GrowthOrder {
     fn from(arg: GrowthArg) -> Self {
         match arg {
+            GrowthArg::LeastOpen => Self::LeastOpen,
             GrowthArg::BoundaryWalk => Self::BoundaryWalk,
             GrowthArg::FlattestFirst => Self::FlattestFirst,
             GrowthArg::LongestFirst => Self::LongestFirst,
@@ -199,11 +205,90 @@ pub(crate) struct WrapArgs {
     pub(crate) sequence: SequenceArgs,
     #[command(flatten)]
     pub(crate) segment: SegmentArgs,
-    /// Leave the points where the paper's method puts them, instead of evening out the area each stands for
+    /// Leave the points where wrapping puts them, instead of evening out the area each stands for
     #[arg(long)]
     pub(crate) no_equalize: bool,
     #[command(flatten)]
+    pub(crate) views: ForViewsArgs,
+    /// Which of the wrapped points are taken
+    #[arg(long, value_enum, value_name = "HOW", default_value = "regions")]
+    pub(crate) select: SelectArg,
+    /// In which order the points are written
+    #[arg(long, value_enum, value_name = "ORDER", default_value = "sequence")]
+    pub(crate) order: OrderArg,
+    #[command(flatten)]
+    pub(crate) weights: WeightsArgs,
+    #[command(flatten)]
     pub(crate) outputs: WrapOutputArgs,
+}
+
+/// Points that tell the visible share.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Views")]
+pub(crate) struct ForViewsArgs {
+    /// Let each point take the place in its cell that makes the visible share of the points tell that of the surface
+    /// best, over many views; takes some seconds and costs a little evenness
+    #[arg(long, conflicts_with = "no_equalize")]
+    pub(crate) for_views: bool,
+    /// The views to serve come from around this direction, from the mesh to the camera [default: from everywhere]
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        requires = "for_views",
+        value_delimiter = ',',
+        num_args = 3,
+        allow_negative_numbers = true
+    )]
+    pub(crate) view_from: Option<Vec<f64>>,
+    /// They come from within this many degrees of it
+    #[arg(long, value_name = "DEGREES", requires = "view_from", default_value = "30")]
+    pub(crate) view_angle: f64,
+    /// Cameras stand this far from the middle of the mesh, in its units [default: infinitely far]
+    #[arg(long, value_name = "LENGTH", requires = "view_from")]
+    pub(crate) view_distance: Option<f64>,
+    /// How many views are served [default: by the number of points]
+    #[arg(long, value_name = "VIEWS", requires = "for_views", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) views: Option<u32>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SelectArg {
+    /// Of twice as many points the most central one in each of as many regions of equal area as points are wanted
+    Regions,
+    /// The paper's: a small surplus is left out along the sequence
+    Sequence,
+    /// The first points of the sequence, so that more points contain fewer; for halton, sobol and r2; neither corrected
+    /// nor equalized
+    Extensible,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum OrderArg {
+    /// That of the sequence
+    Sequence,
+    /// The first k are well spread for every k
+    Progressive,
+}
+
+/// Where points are to lie more densely.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Weights")]
+pub(crate) struct WeightsArgs {
+    /// Make points in proportion to these weights: a text file with one number a line (or CSV, whose last column
+    /// counts) for each vertex or for each face of the mesh file
+    #[arg(long, value_name = "FILE")]
+    pub(crate) weights: Option<PathBuf>,
+    /// What the weights belong to [default: told by their number]
+    #[arg(long, value_enum, value_name = "WHAT", requires = "weights")]
+    pub(crate) weights_of: Option<WeightsOf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum WeightsOf {
+    /// The vertices of the mesh file; linear between them
+    Vertices,
+    /// The faces of the mesh file; constant on each
+    Faces,
 }
 
 #[derive(Debug, Args)]
@@ -324,9 +409,9 @@ pub(crate) struct CompareArgs {
     pub(crate) mesh: MeshArgs,
     /// How many points, one table row a method for each
     #[arg(short = 'n', long = "count", value_name = "N,...", value_delimiter = ',', default_value = "56,335,1000",
-        value_parser = clap::value_parser!(u32).range(1..))]
+        value_parser = clap::value_parser!(u32).range(1..=MOST_COMPARED_POINTS))]
     pub(crate) counts: Vec<u32>,
-    /// The methods [default: all that work on the mesh]
+    /// The methods [default: all that work on the mesh but for-views, which takes seconds]
     #[arg(long, value_enum, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) methods: Option<Vec<Method>>,
     /// How many seeds, from --seed on; more than one give the spread
@@ -346,6 +431,9 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "OUT.svg")]
     pub(crate) plot: Option<PathBuf>,
 }
+
+/// Every set is kept until all are measured: ten million points of seven methods take some 2 GB.
+const MOST_COMPARED_POINTS: i64 = 10_000_000;
 
 /// A point file and what it is called.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -444,7 +532,7 @@ pub(crate) struct BoundArgs {
     pub(crate) mesh: MeshArgs,
     /// How many points, one table row for each
     #[arg(short = 'n', long = "count", value_name = "N,...", value_delimiter = ',', default_value = "56,335,1000",
-        value_parser = clap::value_parser!(u32).range(1..))]
+        value_parser = clap::value_parser!(u32).range(1..=MOST_COMPARED_POINTS))]
     pub(crate) counts: Vec<u32>,
     #[command(flatten)]
     pub(crate) sequence: SequenceArgs,
@@ -462,6 +550,13 @@ pub(crate) struct InfoArgs {
     /// Print JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// The mesh: a PLY, OBJ, STL, glTF, GLB or OFF file
+    #[arg(value_name = "MESH")]
+    pub(crate) mesh: PathBuf,
 }
 
 fn point_formats() -> impl TypedValueParser<Value = PointFormat> {

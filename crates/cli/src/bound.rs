@@ -73,12 +73,18 @@ pub(crate) fn cells(bounds: &Bounds) -> Vec<String> {
         parts.decomposition.degree.to_string(),
         format!("{:.2}", parts.decomposition.mean),
         domain_points.to_string(),
-        format!("{:.4}", BOXES * star.upper),
-        format!("{eq7:.3}"),
-        format!("{:.4}", parts.largest_part.linf),
-        format!("{:.3}", parts.bound.linf),
-        format!("{measured:.4}"),
-        format!("{:.0}", parts.bound.linf / measured),
-        format!("{:.0}", eq7 / measured),
+        digits(BOXES * star.upper, 4),
+        digits(*eq7, 3),
+        digits(parts.largest_part.linf, 4),
+        digits(parts.bound.linf, 3),
+        digits(measured, 4),
+        digits(parts.bound.linf / measured, 0),
+        digits(eq7 / measured, 0),
     ]
+}
+
+/// So many digits behind the point; a dash for what does not exist: the discrepancy of a domain without points, or a
+/// bound over a measured zero.
+fn digits(value: f64, digits: usize) -> String {
+    if value.is_finite() { format!("{value:.digits$}") } else { "-".to_owned() }
 }

@@ -7,7 +7,7 @@ use std::path::{Component, Path};
 use anyhow::{Context, anyhow};
 use ldwrap::attributes::MeshAttributes;
 use ldwrap::io::{Detail, MeshFormat, Model, read_model, read_model_as};
-use ldwrap::{CheckOptions, Progress, RepairReport, SurfaceMesh};
+use ldwrap::{CheckOptions, PolygonSoup, Progress, RepairReport, SurfaceMesh};
 
 use crate::args::{MeshArgs, MeshFormatArg};
 
@@ -15,6 +15,8 @@ use crate::args::{MeshArgs, MeshFormatArg};
 pub(crate) struct Input {
     /// What messages call it.
     pub(crate) name: String,
+    /// As the file gives it.
+    pub(crate) soup: PolygonSoup,
     pub(crate) mesh: SurfaceMesh,
     pub(crate) repaired: RepairReport,
     /// What the file has besides the shape, as far as it was asked for.
@@ -43,7 +45,7 @@ pub(crate) fn read_detail(args: &MeshArgs, detail: Detail, progress: &dyn Progre
     progress.begin("check", 1);
     let options = CheckOptions { turn_outward: !args.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
-    Ok(Input { name, mesh, repaired, attributes })
+    Ok(Input { name, soup, mesh, repaired, attributes })
 }
 
 impl From<MeshFormatArg> for MeshFormat {

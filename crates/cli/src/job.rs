@@ -1,16 +1,19 @@
 //! What is to be done: the command line, checked.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 
-use ldwrap::equalize::EqualizeOptions;
+use glam::DVec3;
+use ldwrap::equalize::{Cameras, EqualizeOptions, ForViews};
 use ldwrap::io::Detail;
 use ldwrap::io::points::{Attribute, PointFormat};
-use ldwrap::pipeline::{Options, Request};
+use ldwrap::pipeline::{Options, Request, SampleOrder, Selection};
 use ldwrap::segment::SegmentOptions;
 use ldwrap::sequence::Sequence;
 
 use crate::args::{
-    AttributeArg, RequestArgs, SegmentArgs, SequenceArg, SequenceArgs, WrapArgs, WrapOutputArgs,
+    AttributeArg, ForViewsArgs, OrderArg, RequestArgs, SegmentArgs, SelectArg, SequenceArg, SequenceArgs,
+    WrapArgs, WrapOutputArgs,
 };
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
@@ -131,11 +134,40 @@ fn point_format(path: &Path) -> Outcome<PointFormat> {
 
 /// Everything that decides the points.
 pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
-    Ok(Options {
+    let selection = match args.select {
+        SelectArg::Regions => Selection::Regions,
+        SelectArg::Sequence => Selection::Sequence,
+        SelectArg::Extensible => Selection::Extensible,
+    };
+    if args.views.for_views && selection == Selection::Extensible {
+        return Err(Failure::wrong_use("--for-views moves points, so extensible points cannot be for views"));
+    }
+    let equalize = !args.no_equalize && selection != Selection::Extensible;
+    let options = Options {
         request: request(&args.request),
-        equalize: (!args.no_equalize).then(EqualizeOptions::default),
+        selection,
+        equalize: equalize
+            .then(|| EqualizeOptions { for_views: for_views(&args.views), ..EqualizeOptions::default() }),
+        order: match args.order {
+            OrderArg::Sequence => SampleOrder::Sequence,
+            OrderArg::Progressive => SampleOrder::Progressive,
+        },
         ..wrap_options(&args.segment, &args.sequence)?
-    })
+    };
+    options.validate().map_err(|error| Failure::wrong_use(error.to_string()))?;
+    Ok(options)
+}
+
+fn for_views(args: &ForViewsArgs) -> Option<ForViews> {
+    let cameras = match args.view_from.as_deref() {
+        Some(&[x, y, z]) => Cameras::Cone {
+            toward: DVec3::new(x, y, z),
+            angle: args.view_angle.to_radians(),
+            distance: args.view_distance,
+        },
+        _ => Cameras::Around,
+    };
+    args.for_views.then(|| ForViews { cameras, views: args.views, ..ForViews::default() })
 }
 
 /// How points are wrapped, whatever their number.
@@ -192,6 +224,17 @@ pub(crate) fn sequence(args: &SequenceArgs) -> Outcome<(Sequence, u64)> {
     };
     sequence.validate().map_err(|error| Failure::wrong_use(format!("--bases: {error}")))?;
     Ok((sequence, seed))
+}
+
+/// `count` seeds from `first` on; at least one.
+pub(crate) fn seeds(first: u64, count: u32) -> Outcome<RangeInclusive<u64>> {
+    match first.checked_add(u64::from(count.saturating_sub(1))) {
+        Some(last) => Ok(first..=last),
+        None => Err(Failure::wrong_use(format!(
+            "--seeds: {count} seeds from {first} on go beyond the largest, {}: take a smaller --seed",
+            u64::MAX
+        ))),
+    }
 }
 
 /// Refuses a value that is given a second time; `name` makes it readable.

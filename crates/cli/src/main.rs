@@ -14,6 +14,7 @@ mod progress;
 mod quality;
 mod report;
 mod table;
+mod weights;
 
 use std::process::ExitCode;
 
@@ -43,6 +44,7 @@ fn run(line: &CommandLine) -> Outcome {
         Command::Compare(args) => commands::compare::run(args, line.quiet),
         Command::Plane(args) => commands::plane::run(args),
         Command::Bound(args) => commands::bound::run(args, line.quiet),
+        Command::View(args) => commands::view::run(args, line.quiet),
         Command::Completions { shell } => commands::help::completions(*shell),
         Command::Man { command } => commands::help::man(command.as_deref()),
     }

@@ -3,17 +3,19 @@
 use anyhow::anyhow;
 use clap::ValueEnum;
 use ldwrap::baseline::Baseline;
-use ldwrap::equalize::EqualizeOptions;
+use ldwrap::equalize::{EqualizeOptions, ForViews};
 use ldwrap::pipeline::{self, Options, Request};
 use ldwrap::{Progress, SurfaceMesh, SurfacePoint};
 
 /// A way to make points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Method {
-    /// The paper's method: segment, unfold, wrap, correct
+    /// Segment, unfold, wrap, correct, and choose one point in each region of equal area
     Wrap,
-    /// The paper's method, then equalized
+    /// The same, then equalized
     Equalize,
+    /// Equalized, then placed for views
+    ForViews,
     /// Independent uniform points
     Random,
     /// Triangles along a Hilbert curve, the sum of areas inverted at equal steps
@@ -28,9 +30,10 @@ pub(crate) enum Method {
 
 impl Method {
     /// All of them.
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 8] = [
         Self::Wrap,
         Self::Equalize,
+        Self::ForViews,
         Self::Random,
         Self::Hilbert,
         Self::Poisson,
@@ -49,7 +52,9 @@ impl Method {
         match self {
             Self::SphereHammersley => sphere(Baseline::SphereHammersley),
             Self::SphereFibonacci => sphere(Baseline::SphereFibonacci),
-            Self::Wrap | Self::Equalize | Self::Random | Self::Hilbert | Self::Poisson => true,
+            Self::Wrap | Self::Equalize | Self::ForViews | Self::Random | Self::Hilbert | Self::Poisson => {
+                true
+            }
         }
     }
 
@@ -74,6 +79,10 @@ impl Method {
         match self {
             Self::Wrap => wrapped(None),
             Self::Equalize => wrapped(Some(EqualizeOptions::default())),
+            Self::ForViews => {
+                let for_views = Some(ForViews { seed, ..ForViews::default() });
+                wrapped(Some(EqualizeOptions { for_views, ..EqualizeOptions::default() }))
+            }
             Self::Random => baseline(Baseline::Random),
             Self::Hilbert => baseline(Baseline::Hilbert),
             Self::Poisson => baseline(Baseline::Poisson),

@@ -1,8 +1,9 @@
 //! The report of a run as JSON. Its keys and units are documented in this crate's README and stay as they are.
 
-use ldwrap::equalize::EqualizeReport;
+use ldwrap::density::Density;
+use ldwrap::equalize::{EqualizeOptions, EqualizeReport};
 use ldwrap::irregularity::Irregularity;
-use ldwrap::pipeline::{Options, Request, Run};
+use ldwrap::pipeline::{Options, Request, Run, SampleOrder, Selection};
 use ldwrap::segment::GrowthOrder;
 use ldwrap::sequence::Sequence;
 use ldwrap::unfold::Strip;
@@ -20,6 +21,8 @@ pub(crate) struct Report<'a> {
     options: OptionsReport,
     mesh: MeshReport<'a>,
     strips: Vec<StripReport>,
+    /// The length of all open border edges over sqrt(area).
+    open_border: f64,
     points: PointsReport,
     irregularity: Irregularity,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -38,7 +41,11 @@ struct OptionsReport {
     flatness_angle: f64,
     smallest_share: f64,
     growth: GrowthOrder,
-    equalize: bool,
+    selection: Selection,
+    equalize: Option<EqualizeOptions>,
+    order: SampleOrder,
+    /// Whether weights were given.
+    weighted: bool,
 }
 
 /// What a mesh is; `info --json` prints this.
@@ -73,10 +80,12 @@ impl<'a> Report<'a> {
     pub(crate) fn new(
         mesh: MeshReport<'a>,
         options: &Options,
+        density: &Density,
         run: &Run,
         quality: Option<Quality>,
         seconds: Seconds,
     ) -> Self {
+        let area = mesh.area;
         Self {
             version: env!("CARGO_PKG_VERSION"),
             options: OptionsReport {
@@ -87,7 +96,10 @@ impl<'a> Report<'a> {
                 flatness_angle: degrees(options.segment.flatness_angle),
                 smallest_share: options.segment.smallest_share,
                 growth: options.segment.order,
-                equalize: options.equalize.is_some(),
+                selection: options.selection,
+                equalize: options.equalize,
+                order: options.order,
+                weighted: !density.is_uniform(),
             },
             mesh,
             strips: run
@@ -96,6 +108,7 @@ impl<'a> Report<'a> {
                 .iter()
                 .map(|strip| strip_report(strip, options.tolerance * run.d_m))
                 .collect(),
+            open_border: open_border(area, options, run),
             points: PointsReport {
                 count: run.samples.len(),
                 d_m: run.d_m,
@@ -123,6 +136,11 @@ impl<'a> MeshReport<'a> {
             repaired,
         }
     }
+}
+
+/// The length of the border that stays open at a run's d_m, both sides of each cut, over the root of the area.
+pub(crate) fn open_border(area: f64, options: &Options, run: &Run) -> f64 {
+    run.strips.open_border_length(options.tolerance * run.d_m) / area.sqrt()
 }
 
 fn strip_report(strip: &Strip, tolerance: f64) -> StripReport {

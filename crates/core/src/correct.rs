@@ -29,7 +29,9 @@ pub struct Correction {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corrected {
     /// Which point of the sequence it is.
-    pub index: u32,
+    pub index: u64,
+    /// How many other copies of it were removed from overlaps.
+    pub copies_removed: u32,
     /// The sample.
     pub sample: Sample,
 }
@@ -58,12 +60,21 @@ pub fn correct(
         let strip = StripId::new(s);
         correction.projected += mend.projected.len();
         correction.removed += mend.removed.len();
-        let mut removed = mend.removed.into_iter().peekable();
-        for (i, wrapped) in caught.into_iter().enumerate() {
+        let mut removed = mend.removed.iter().copied().peekable();
+        let first = corrected.len();
+        for (i, wrapped) in caught.iter().enumerate() {
             if removed.next_if_eq(&i).is_none() {
-                let WrappedPoint { index, point, place } = wrapped;
+                let WrappedPoint { index, point, place } = *wrapped;
                 let sample = Sample { point, strip, place, origin: Origin::Wrapped };
-                corrected.push(Corrected { index, sample });
+                corrected.push(Corrected { index, copies_removed: 0, sample });
+            }
+        }
+        for removed in mend.removed {
+            // Of copies that lie beside an edge one is kept, so there is one to remember it.
+            let index = caught[removed].index;
+            let kept = first + corrected[first..].partition_point(|c| c.index < index);
+            if let Some(kept) = corrected.get_mut(kept).filter(|c| c.index == index) {
+                kept.copies_removed += 1;
             }
         }
         for projection in mend.projected {
@@ -73,7 +84,7 @@ pub fn correct(
             barycentric[(halfedge.corner() + 1) % 3] = along;
             let point = SurfacePoint { face: halfedge.face(), barycentric };
             let sample = Sample { point, strip, place, origin: Origin::Projected };
-            corrected.push(Corrected { index, sample });
+            corrected.push(Corrected { index, copies_removed: 0, sample });
         }
     }
     corrected.sort_by_key(|c| (c.index, c.sample.strip, c.sample.point.face));
@@ -82,7 +93,7 @@ pub fn correct(
 
 /// A point of an interstice and the edge onto which it is projected.
 struct Projection {
-    index: u32,
+    index: u64,
     distance: f64,
     halfedge: HalfedgeId,
     /// How far along the half-edge, 0 to 1.

@@ -54,6 +54,7 @@
 pub mod attributes;
 pub mod baseline;
 pub mod correct;
+pub mod density;
 pub mod domain;
 pub mod equalize;
 pub mod geometry;
@@ -67,11 +68,14 @@ pub mod pipeline;
 #[cfg(test)]
 mod planted;
 mod progress;
+pub mod progressive;
 mod random;
 mod request;
 mod sample;
 pub mod segment;
+mod selection;
 pub mod sequence;
+mod shares;
 pub mod spatial;
 pub mod unfold;
 pub mod wrap;

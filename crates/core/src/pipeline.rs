@@ -1,18 +1,21 @@
 //! Chains the stages and keeps every value; no logic of its own.
 
 use crate::correct::Correction;
+use crate::density::Density;
 use crate::domain::PlanarDomain;
 use crate::equalize::{EqualizeOptions, EqualizeReport, equalize};
 use crate::irregularity::{Irregularity, irregularity};
 use crate::mesh::SurfaceMesh;
 use crate::progress::Progress;
-use crate::request::{MOST_DOMAIN_POINTS, Scattered, Scattering};
+use crate::progressive::progressive;
+use crate::request::{Scattered, Scattering};
 use crate::sample::{Origin, Sample};
-use crate::segment::{SegmentOptions, Segmentation, segment};
+use crate::segment::{SegmentOptions, Segmentation, segment, segment_for};
 use crate::sequence::{self, Sequence, SequenceError};
 use crate::unfold::{Strips, unfold};
 
 pub use crate::request::Request;
+pub use crate::selection::{SampleOrder, Selection};
 
 /// Everything that decides the points, besides the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,10 +28,14 @@ pub struct Options {
     pub sequence: Sequence,
     /// Shifts the point set (Cranley-Patterson rotation); 0 leaves it as it is.
     pub seed: u64,
+    /// How the points are chosen among those that wrapping gives. Default: the most central of regions of equal mass.
+    pub selection: Selection,
     /// Interstices and overlaps thinner than this many d_m are corrected (paper, 4.2 step 5). Default: 0.1.
     pub tolerance: f64,
     /// Equalize after the correction; `None` gives the paper's result. Default: `None` in the library until asked.
     pub equalize: Option<EqualizeOptions>,
+    /// In which order the points are. Default: that of the sequence.
+    pub order: SampleOrder,
 }
 
 impl Default for Options {
@@ -38,9 +45,62 @@ impl Default for Options {
             segment: SegmentOptions::default(),
             sequence: Sequence::default(),
             seed: 0,
+            selection: Selection::default(),
             tolerance: 0.1,
             equalize: None,
+            order: SampleOrder::default(),
         }
+    }
+}
+
+impl Options {
+    /// Checks what can be checked without a mesh.
+    ///
+    /// # Errors
+    /// [`OptionsError`] when an option is out of range or two exclude each other.
+    pub fn validate(&self) -> Result<(), OptionsError> {
+        self.sequence.validate()?;
+        if self.selection == Selection::Extensible {
+            match self.sequence {
+                Sequence::Hammersley { .. } => {
+                    return Err(OptionsError::NotExtensible { sequence: "Hammersley" });
+                }
+                Sequence::Fibonacci => return Err(OptionsError::NotExtensible { sequence: "Fibonacci" }),
+                Sequence::Halton { .. } | Sequence::Sobol { .. } | Sequence::R2 => {}
+            }
+            if self.equalize.is_some() {
+                return Err(OptionsError::Extensible { what: "equalized" });
+            }
+            if self.order == SampleOrder::Progressive {
+                return Err(OptionsError::Extensible { what: "put in another order" });
+            }
+        }
+        let finite = |name, value: f64, ok: bool, allowed| {
+            if ok {
+                Ok(())
+            } else {
+                Err(OptionsError::OutOfRange { name, value: value.to_string(), allowed })
+            }
+        };
+        let for_views = self.equalize.and_then(|equalize| equalize.for_views);
+        if let Some((name, value, allowed)) = for_views.and_then(|views| views.fault()) {
+            return Err(OptionsError::OutOfRange { name, value, allowed });
+        }
+        let SegmentOptions { flatness_angle, smallest_share, order: _ } = self.segment;
+        let half_turn = std::f64::consts::PI;
+        finite(
+            "flatness angle",
+            flatness_angle,
+            (0.0..=half_turn).contains(&flatness_angle),
+            "from 0 to pi radians",
+        )?;
+        finite("smallest share", smallest_share, (0.0..=1.0).contains(&smallest_share), "from 0 to 1")?;
+        finite(
+            "tolerance",
+            self.tolerance,
+            (0.0..=1.0).contains(&self.tolerance),
+            "from 0 to 1 (in units of d_m)",
+        )
     }
 }
 
@@ -82,13 +142,25 @@ pub enum OptionsError {
     /// The sequence does not exist.
     #[error(transparent)]
     Sequence(#[from] SequenceError),
-    /// More points of the planar domain would be needed than can be numbered.
-    #[error(
-        "{wanted:.3e} points of the planar domain are needed, at most {MOST_DOMAIN_POINTS} can be: ask for fewer points"
-    )]
+    /// More points of the planar domain would be needed than memory is spent on.
+    #[error("{wanted:.3e} points of the planar domain are needed, which is too many: ask for fewer points")]
     TooMany {
         /// How many.
         wanted: f64,
+    },
+    /// A sequence whose points depend on their number cannot be extended.
+    #[error(
+        "the points of {sequence} depend on their number and cannot be extended: use Halton, Sobol or R2"
+    )]
+    NotExtensible {
+        /// The sequence.
+        sequence: &'static str,
+    },
+    /// What cannot be combined with extensible points, because it looks at all of them.
+    #[error("extensible points cannot be {what}: that depends on how many there are")]
+    Extensible {
+        /// What was asked for.
+        what: &'static str,
     },
     /// The caller cancelled.
     #[error("cancelled")]
@@ -96,41 +168,77 @@ pub enum OptionsError {
 }
 
 /// Runs all stages on a mesh. `progress` hears the stages' names: `segment`, `unfold`, `wrap`, `irregularity`,
-/// `equalize`.
+/// `equalize`, `order`.
 ///
 /// # Errors
 /// [`OptionsError`] when an option is out of range or the caller cancelled.
 pub fn run(mesh: &SurfaceMesh, options: &Options, progress: &dyn Progress) -> Result<Run, OptionsError> {
-    check(options)?;
+    run_weighted(mesh, &Density::UNIFORM, options, progress)
+}
+
+/// As [`run`], with points in proportion to a density of the mesh. Unfolding stays congruent; where `d_m` stands for a
+/// length, it is that of places of mean density.
+///
+/// Exact counts are met whatever the weights. Places more than some times denser than the mean (four times for 100,000
+/// points, thousands of times for 100) get fewer points than are due before equalizing.
+///
+/// # Errors
+/// As [`run`].
+///
+/// # Panics
+/// If the density was made for a mesh with fewer faces.
+pub fn run_weighted(
+    mesh: &SurfaceMesh,
+    density: &Density,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Run, OptionsError> {
+    options.validate()?;
+    // Extensible points are the same whatever their number, so nothing may depend on it.
+    let tolerance = if options.selection == Selection::Extensible { 0.0 } else { options.tolerance };
     let stage = |name| {
         progress.begin(name, 1);
         if progress.is_cancelled() { Err(OptionsError::Cancelled) } else { Ok(()) }
     };
     stage("segment")?;
-    let segmentation = segment(mesh, &options.segment);
+    let segmentation = match options.request {
+        Request::Count(n) if options.selection != Selection::Extensible => {
+            let d_m = libm::sqrt(mesh.area() / n.max(1) as f64);
+            segment_for(mesh, &options.segment, tolerance * d_m)
+        }
+        _ => segment(mesh, &options.segment),
+    };
     stage("unfold")?;
     let strips = unfold(mesh, &segmentation);
     let domain = PlanarDomain::lay_out(&strips);
     stage("wrap")?;
     let scattering = Scattering {
         mesh,
+        density,
         strips: &strips,
         domain: &domain,
         sequence: options.sequence,
         shift: sequence::shift_of_seed(options.seed),
-        tolerance: options.tolerance,
+        selection: options.selection,
+        tolerance,
     };
     let Scattered { samples, correction, d_m } = scattering.meet(options.request)?;
     stage("irregularity")?;
-    let irregularity = irregularity(&strips, d_m, options.tolerance * d_m);
-    let (samples, equalize) = match &options.equalize {
+    let irregularity = irregularity(&strips, d_m, tolerance * d_m);
+    let (mut samples, equalize) = match &options.equalize {
         None => (samples, None),
         Some(options) => {
             stage("equalize")?;
-            let (samples, report) = equalize_samples(mesh, &strips, &domain, samples, options, progress);
+            let (samples, report) =
+                equalize_samples(mesh, density, &strips, &domain, samples, options, progress);
             (samples, Some(report))
         }
     };
+    if options.order == SampleOrder::Progressive {
+        stage("order")?;
+        let points: Vec<_> = samples.iter().map(|s| s.point).collect();
+        samples = progressive(mesh, &points).into_iter().map(|i| samples[i]).collect();
+    }
     if progress.is_cancelled() {
         return Err(OptionsError::Cancelled);
     }
@@ -140,6 +248,7 @@ pub fn run(mesh: &SurfaceMesh, options: &Options, progress: &dyn Progress) -> Re
 /// Equalizes samples: those that moved lie in the planar domain where their new face lies.
 fn equalize_samples(
     mesh: &SurfaceMesh,
+    density: &Density,
     strips: &Strips,
     domain: &PlanarDomain,
     samples: Vec<Sample>,
@@ -148,7 +257,7 @@ fn equalize_samples(
 ) -> (Vec<Sample>, EqualizeReport) {
     let points: Vec<_> = samples.iter().map(|s| s.point).collect();
     let strip_of_face: Vec<_> = strips.places.iter().map(|p| p.strip).collect();
-    let equalized = equalize(mesh, &points, &strip_of_face, options, progress);
+    let equalized = equalize(mesh, &points, &strip_of_face, density, options, progress);
     let samples = equalized.points.into_iter().zip(samples).map(|(point, before)| {
         let (strip, place) = strips.lay_point(&point);
         // What the correction moved stays known: equalizing keeps the order of the points.
@@ -156,26 +265,4 @@ fn equalize_samples(
         Sample { point, strip, place: place + domain.offsets[strip.index()], origin }
     });
     (samples.collect(), equalized.report)
-}
-
-fn check(options: &Options) -> Result<(), OptionsError> {
-    options.sequence.validate()?;
-    let finite = |name, value: f64, ok: bool, allowed| {
-        if ok { Ok(()) } else { Err(OptionsError::OutOfRange { name, value: value.to_string(), allowed }) }
-    };
-    let SegmentOptions { flatness_angle, smallest_share, order: _ } = options.segment;
-    let half_turn = std::f64::consts::PI;
-    finite(
-        "flatness angle",
-        flatness_angle,
-        (0.0..=half_turn).contains(&flatness_angle),
-        "from 0 to pi radians",
-    )?;
-    finite("smallest share", smallest_share, (0.0..=1.0).contains(&smallest_share), "from 0 to 1")?;
-    finite(
-        "tolerance",
-        options.tolerance,
-        (0.0..=1.0).contains(&options.tolerance),
-        "from 0 to 1 (in units of d_m)",
-    )
 }

@@ -1,5 +1,8 @@
 //! Seeded random numbers whose stream never changes: xoshiro256++ seeded by SplitMix64, as its authors advise.
 
+use std::f64::consts::PI;
+
+use glam::{DMat3, DQuat};
 use rand_core::{Rng as _, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
@@ -26,5 +29,14 @@ impl Random {
     /// Uniform in `0..count`; the bias is below 2^-64 times `count`.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         ((u128::from(self.bits()) * count as u128) >> 64) as usize
+    }
+
+    /// A uniform random rotation (Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
+    pub(crate) fn rotation(&mut self) -> DMat3 {
+        let [u, v, w] = [self.unit(), self.unit(), self.unit()];
+        let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
+        let (sin_v, cos_v) = libm::sincos(2.0 * PI * v);
+        let (sin_w, cos_w) = libm::sincos(2.0 * PI * w);
+        DMat3::from_quat(DQuat::from_xyzw(a * sin_v, a * cos_v, b * sin_w, b * cos_w).normalize())
     }
 }

@@ -13,7 +13,7 @@ use crate::unfold::{Strip, Strips};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WrappedPoint {
     /// Which point of the sequence it is.
-    pub index: u32,
+    pub index: u64,
     /// Where it is on the surface.
     pub point: SurfacePoint,
     /// Where it lies in the planar domain.

@@ -32,8 +32,8 @@ export interface Options {
   seed?: number;
   /** The largest angle in degrees that counts as almost flat. Default: 40. */
   flatnessAngle?: number;
-  /** Default: "flattest-first". */
-  growth?: "flattest-first" | "boundary-walk" | "longest-first";
+  /** Default: "least-open". */
+  growth?: "least-open" | "flattest-first" | "boundary-walk" | "longest-first";
   /** Smaller segments go on growing; a share of all triangles. Default: 0.002. */
   smallestShare?: number;
   /** Interstices and overlaps thinner than this many d_m are corrected. Default: 0.1. */

@@ -134,7 +134,7 @@ impl Engine {
         if let Job::Load(source) = job {
             progress.begin("load", 1);
             let (mesh, repaired) = source.load()?;
-            let scene = MeshScene::new(source.name(), &mesh, &repaired);
+            let scene = MeshScene::new(&source, &mesh, &repaired);
             self.looker = None;
             self.loaded =
                 Some(Loaded { name: source.name().to_owned(), mesh, repaired, placed: [None, None] });

@@ -2,27 +2,59 @@
 
 use std::collections::VecDeque;
 
-use crate::engine::{Answer, Job};
+use crate::engine::{Answer, Job, Slot};
 
 /// The jobs that made the state of an engine.
 #[derive(Debug, Default)]
 pub struct Journal {
     load: Option<Job>,
-    places: [Option<Job>; 2],
+    places: [Option<Held>; 2],
     posted: VecDeque<Posted>,
+}
+
+/// What put points into a slot.
+#[derive(Debug)]
+struct Held {
+    job: Job,
+    here: Here,
+}
+
+/// Whether the engine that runs now holds a slot's points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Here {
+    Yes,
+    /// Only the one before held them: they are made again when a job needs them.
+    Lost,
 }
 
 #[derive(Debug)]
 enum Posted {
     Asked(Job),
-    /// Done again after a restart: the answer is known already.
-    Again,
+    /// Done again after a restart: the answer is known already. A slot's points, or the mesh.
+    Again(Option<Slot>),
 }
 
 impl Journal {
-    /// A job was posted.
-    pub fn post(&mut self, job: Job) {
+    /// A job is to be posted: what to send, which is the job itself after what it needs and a restart has lost.
+    pub fn post(&mut self, job: Job) -> Vec<Job> {
+        let needed: &[Slot] = match &job {
+            Job::Grow(slot, ..) | Job::Judge(slot, _) | Job::Export(slot, _) => &[*slot],
+            Job::Look(_) => &Slot::ALL,
+            Job::Load(_) | Job::Wrap(..) | Job::Place(..) => &[],
+        };
+        let mut jobs = Vec::new();
+        for slot in needed {
+            if let Some(held) = &mut self.places[slot.index()]
+                && held.here == Here::Lost
+            {
+                held.here = Here::Yes;
+                jobs.push(held.job.clone());
+                self.posted.push_back(Posted::Again(Some(*slot)));
+            }
+        }
+        jobs.push(job.clone());
         self.posted.push_back(Posted::Asked(job));
+        jobs
     }
 
     /// Whether an answer is awaited.
@@ -48,35 +80,58 @@ impl Journal {
             }
             (Answer::Wrapped(..), job @ Job::Wrap(slot, _))
             | (Answer::Progress(..), job @ Job::Place(slot, _)) => {
-                self.places[slot.index()] = Some(job);
+                self.places[slot.index()] = Some(Held { job, here: Here::Yes });
             }
             _ => {}
         }
         true
     }
 
-    /// The engine was ended and a new one started: what to post so that it holds what the old one held.
-    pub fn restart(&mut self) -> Vec<Job> {
-        let jobs: Vec<Job> = self.load.iter().chain(self.places.iter().flatten()).cloned().collect();
-        self.posted = jobs.iter().map(|_| Posted::Again).collect();
-        jobs
+    /// The engine was ended and a new one started: what to send so that it holds the mesh that the old one held. Its
+    /// points are made again when a job needs them. What broke while it was done again is forgotten.
+    pub fn restart(&mut self) -> Option<Job> {
+        match self.posted.front() {
+            Some(Posted::Again(None)) => (self.load, self.places) = (None, [None, None]),
+            Some(Posted::Again(Some(slot))) => self.places[slot.index()] = None,
+            Some(Posted::Asked(_)) | None => {}
+        }
+        for held in self.places.iter_mut().flatten() {
+            held.here = Here::Lost;
+        }
+        self.posted = self.load.iter().map(|_| Posted::Again(None)).collect();
+        self.load.clone()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::{Engine, Slot};
+    use crate::engine::Engine;
     use crate::settings::Settings;
     use crate::source::Source;
     use ldwrap::Silent;
     use ldwrap::shapes::Shape;
 
-    fn work(engine: &mut Engine, journal: &mut Journal, job: Job) -> (Answer, bool) {
-        journal.post(job.clone());
-        let answer = engine.handle(job, &Silent, &|| 0.0);
-        let news = journal.receive(&answer);
-        (answer, news)
+    /// Sends what the journal says and returns the answers that are news.
+    fn send(engine: &mut Engine, journal: &mut Journal, jobs: impl IntoIterator<Item = Job>) -> Vec<Answer> {
+        let answers = jobs.into_iter().map(|job| engine.handle(job, &Silent, &|| 0.0));
+        answers.filter(|answer| journal.receive(answer)).collect()
+    }
+
+    fn work(engine: &mut Engine, journal: &mut Journal, job: Job) -> Vec<Answer> {
+        let jobs = journal.post(job);
+        send(engine, journal, jobs)
+    }
+
+    fn names(jobs: &[Job]) -> Vec<&'static str> {
+        jobs.iter()
+            .map(|job| match job {
+                Job::Load(_) => "load",
+                Job::Wrap(..) => "wrap",
+                Job::Grow(..) => "grow",
+                _ => "other",
+            })
+            .collect()
     }
 
     #[test]
@@ -84,19 +139,32 @@ mod tests {
         let (mut engine, mut journal) = (Engine::default(), Journal::default());
         work(&mut engine, &mut journal, Job::Load(Source::Shape(Shape::Sphere)));
         let settings = Settings { seed: 3, ..Settings::default() };
-        let (before, news) = work(&mut engine, &mut journal, Job::Wrap(Slot::A, settings));
-        assert!(news && matches!(before, Answer::Wrapped(..)));
+        assert_eq!(work(&mut engine, &mut journal, Job::Wrap(Slot::A, settings)).len(), 1);
+        let before = work(&mut engine, &mut journal, Job::Grow(Slot::A, 5, 3));
         journal.post(Job::Wrap(Slot::A, Settings::default()));
         assert!(journal.is_working());
         let mut other = Engine::default();
-        let mut last = None;
-        for job in journal.restart() {
-            let answer = other.handle(job, &Silent, &|| 0.0);
-            assert!(!journal.receive(&answer), "what is done again is no news");
-            last = Some(answer);
-        }
-        assert_eq!(last, Some(before));
+        let again = journal.restart();
+        assert_eq!(send(&mut other, &mut journal, again), [], "what is done again is no news");
         assert!(!journal.is_working());
+        let jobs = journal.post(Job::Grow(Slot::A, 5, 3));
+        assert_eq!(names(&jobs), ["wrap", "grow"], "points are made again when they are needed");
+        assert_eq!(send(&mut other, &mut journal, jobs), before);
+        assert_eq!(names(&journal.post(Job::Grow(Slot::A, 5, 3))), ["grow"]);
+    }
+
+    #[test]
+    fn what_breaks_when_it_is_done_again_is_not_tried_for_ever() {
+        let (mut engine, mut journal) = (Engine::default(), Journal::default());
+        work(&mut engine, &mut journal, Job::Load(Source::Shape(Shape::Cube)));
+        work(&mut engine, &mut journal, Job::Wrap(Slot::A, Settings::default()));
+        let mut other = Engine::default();
+        let again = journal.restart();
+        send(&mut other, &mut journal, again);
+        assert_eq!(names(&journal.post(Job::Grow(Slot::A, 5, 3))), ["wrap", "grow"]);
+        assert!(journal.restart().is_some(), "the points broke it, the mesh did not");
+        assert_eq!(journal.restart(), None, "now the mesh did");
+        assert_eq!(names(&journal.post(Job::Grow(Slot::A, 5, 3))), ["grow"]);
     }
 
     #[test]
@@ -104,6 +172,6 @@ mod tests {
         let (mut engine, mut journal) = (Engine::default(), Journal::default());
         work(&mut engine, &mut journal, Job::Load(Source::Shape(Shape::Cube)));
         work(&mut engine, &mut journal, Job::Load(Source::File { name: "x.obj".into(), bytes: Vec::new() }));
-        assert_eq!(journal.restart(), [Job::Load(Source::Shape(Shape::Cube))]);
+        assert_eq!(journal.restart(), Some(Job::Load(Source::Shape(Shape::Cube))));
     }
 }

@@ -6,6 +6,7 @@
 //! | [`source`] | where a mesh comes from: a built-in shape or a file's bytes | everywhere |
 //! | [`engine`] | does the work: jobs in, answers out; holds the mesh and the runs | worker or thread |
 //! | [`scene`] | what the engine tells the page about a mesh and a run: plain numbers to draw | both |
+//! | [`upright`] | guesses which axis of a mesh points up | worker or thread |
 //! | [`model`] | the page's whole state, without a window | page |
 //! | [`app`] | draws the model with egui and turns gestures into calls on it | page |
 //! | `api` | the JavaScript API | JavaScript |
@@ -29,3 +30,4 @@ pub mod report;
 pub mod scene;
 pub mod settings;
 pub mod source;
+pub mod upright;

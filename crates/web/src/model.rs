@@ -1,6 +1,6 @@
 //! The page's whole state and everything that can happen to it; knows no window, no browser and no clock.
 //!
-//! The model never works itself: it puts jobs into two queues, one for each engine, and takes in their answers.
+//! The model never works itself: it puts jobs into three queues, one for each engine, and takes in their answers.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use ldwrap::shapes::Shape;
 use serde_json::{Value, json};
 
 use crate::camera::{Orbit, PlaneView, Up};
-use crate::engine::{Answer, Job, Slot};
+use crate::engine::{Answer, Job, PLACED, Slot};
 use crate::export::Export;
 use crate::figure::Figure;
 use crate::judge::{Measure, Verdict};
@@ -23,10 +23,24 @@ use crate::source::Source;
 /// Which engine a job is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Desk {
-    /// Loads, wraps, measures, makes files.
+    /// Loads, wraps, makes files.
     Maker,
+    /// Measures, so that a long measure keeps nobody waiting.
+    Judge,
     /// Finds what the camera sees, many times a second.
     Looker,
+}
+
+/// What the judge has in hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Judging {
+    /// Nothing.
+    #[default]
+    Idle,
+    /// A mesh, points, or a measure that nobody waits for any more.
+    Prepares,
+    /// A measure.
+    Measures(Slot, Measure),
 }
 
 /// What colours the triangles.
@@ -119,9 +133,13 @@ pub struct Model {
     loading: Option<Source>,
     queue: VecDeque<Job>,
     in_hand: Option<Job>,
-    cancel: bool,
+    cancels: Vec<Desk>,
     wrapped: [Option<Settings>; 2],
     looker_queue: VecDeque<Job>,
+    judge_queue: VecDeque<Job>,
+    judging: Judging,
+    /// What looker and judge are to load before they get points.
+    unseen: Option<Source>,
     looked: Option<Looking>,
     looking: bool,
 }
@@ -155,9 +173,12 @@ impl Default for Model {
             loading: None,
             queue: VecDeque::new(),
             in_hand: None,
-            cancel: false,
+            cancels: Vec::new(),
             wrapped: [None, None],
             looker_queue: VecDeque::new(),
+            judge_queue: VecDeque::new(),
+            judging: Judging::default(),
+            unseen: None,
             looked: None,
             looking: false,
         }
@@ -168,8 +189,12 @@ impl Model {
     /// Starts with a link's shape and settings.
     pub fn open(link: Option<Link>) -> Self {
         let mut model = Self::default();
-        let Link { shape, settings } = link.unwrap_or_default();
+        let Link { shape, settings, other } = link.unwrap_or_default();
         model.settings[0] = settings;
+        if let Some(other) = other {
+            model.settings[1] = other;
+            model.comparing = true;
+        }
         model.load(Source::Shape(shape.parse().unwrap_or(Shape::Cup)));
         model
     }
@@ -180,7 +205,8 @@ impl Model {
             Some(Source::Shape(shape)) => shape.name().to_owned(),
             _ => String::new(),
         };
-        Link { shape, settings: self.settings[0].clone() }
+        let [settings, other] = self.settings.clone();
+        Link { shape, settings, other: self.comparing.then_some(other) }
     }
 
     /// The built-in shape that is shown, if it is one.
@@ -194,7 +220,7 @@ impl Model {
     /// Asks for another mesh; the one shown stays until the new one is checked.
     pub fn load(&mut self, source: Source) {
         self.queue.clear();
-        self.cancel = self.in_hand.is_some();
+        self.cancels.extend(self.in_hand.is_some().then_some(Desk::Maker));
         self.loading = Some(source.clone());
         self.queue.push_back(Job::Load(source));
     }
@@ -204,12 +230,16 @@ impl Model {
         if self.mesh.is_none() || self.loading.is_some() {
             return;
         }
-        for slot in self.slots() {
+        // Each goes before all that waits, so A goes last to be first.
+        let slots: Vec<Slot> = self.slots().collect();
+        for slot in slots.into_iter().rev() {
             let wanted = &self.settings[slot.index()];
             if self.wrapped[slot.index()].as_ref() != Some(wanted) {
                 self.wrapped[slot.index()] = Some(wanted.clone());
-                self.queue.retain(|job| !matches!(job, Job::Wrap(s, _) | Job::Judge(s, _) if *s == slot));
-                self.cancel |= matches!(&self.in_hand, Some(Job::Wrap(s, _)) if *s == slot);
+                self.queue.retain(|job| !matches!(job, Job::Wrap(s, _) if *s == slot));
+                if matches!(&self.in_hand, Some(Job::Wrap(s, _)) if *s == slot) {
+                    self.cancels.push(Desk::Maker);
+                }
                 self.queue.push_front(Job::Wrap(slot, wanted.clone()));
             }
         }
@@ -230,12 +260,12 @@ impl Model {
     pub fn cancel(&mut self) {
         self.queue.clear();
         self.loading = None;
-        self.cancel = self.in_hand.is_some();
+        self.cancels.extend(self.in_hand.is_some().then_some(Desk::Maker));
     }
 
-    /// Whether the engine is to be told to stop; asked once.
-    pub fn take_cancel(&mut self) -> bool {
-        std::mem::take(&mut self.cancel)
+    /// The engines that are to be told to stop.
+    pub fn take_cancels(&mut self) -> Vec<Desk> {
+        std::mem::take(&mut self.cancels)
     }
 
     /// The jobs to post now, each to its engine.
@@ -246,6 +276,15 @@ impl Model {
         {
             self.in_hand = Some(job.clone());
             jobs.push((Desk::Maker, job));
+        }
+        if self.judging == Judging::Idle
+            && let Some(job) = self.judge_queue.pop_front()
+        {
+            self.judging = match job {
+                Job::Judge(slot, measure) => Judging::Measures(slot, measure),
+                _ => Judging::Prepares,
+            };
+            jobs.push((Desk::Judge, job));
         }
         jobs
     }
@@ -278,6 +317,30 @@ impl Model {
         }
     }
 
+    /// Takes in what the judge answered.
+    pub fn receive_verdict(&mut self, answer: Answer) {
+        match answer {
+            Answer::Progress(stage, _) if stage != PLACED => return,
+            // Of points that were replaced meanwhile nothing is kept.
+            Answer::Judged(slot, measure, verdict) if self.judging == Judging::Measures(slot, measure) => {
+                self.verdicts[slot.index()].push((measure, verdict));
+            }
+            Answer::Failed(reason) => self.notice = Some(Notice::Problem(reason)),
+            _ => {}
+        }
+        self.judging = Judging::Idle;
+    }
+
+    /// Points were replaced: what is measured of them is of no use any more.
+    fn stop_judging(&mut self, replaced: impl Fn(Slot) -> bool) {
+        self.judge_queue
+            .retain(|job| !matches!(job, Job::Judge(slot, _) | Job::Place(slot, _) if replaced(*slot)));
+        if matches!(self.judging, Judging::Measures(slot, _) if replaced(slot)) {
+            self.judging = Judging::Prepares;
+            self.cancels.push(Desk::Judge);
+        }
+    }
+
     /// Takes in what the maker answered.
     pub fn receive(&mut self, answer: Answer) {
         if let Answer::Progress(stage, share) = answer {
@@ -289,7 +352,6 @@ impl Model {
         match answer {
             Answer::Loaded(mesh) => self.accept_mesh(*mesh),
             Answer::Wrapped(slot, run) => self.accept_run(slot, *run),
-            Answer::Judged(slot, measure, verdict) => self.verdicts[slot.index()].push((measure, verdict)),
             Answer::Grown(_, figure) => self.figure = Some(figure),
             Answer::Exported(name, bytes) => {
                 self.notice = Some(Notice::Done(format!("saved {name}")));
@@ -309,17 +371,16 @@ impl Model {
                     self.notice = Some(Notice::Done("stopped; the points are those from before".into()));
                 }
             }
-            Answer::Progress(..) | Answer::Looked(_) => {}
+            Answer::Progress(..) | Answer::Looked(_) | Answer::Judged(..) => {}
         }
     }
 
     fn accept_mesh(&mut self, mesh: MeshScene) {
         self.source = self.loading.take();
-        if let Some(source) = &self.source {
-            self.looker_queue.push_back(Job::Load(source.clone()));
-        }
-        let up = if matches!(self.source, Some(Source::Shape(_))) { Up::Z } else { Up::Y };
-        self.orbit = Orbit::around(mesh.centre, mesh.radius, up);
+        // The others load it when there are points: until then the processor is the maker's.
+        self.unseen = self.source.clone();
+        self.stop_judging(|_| true);
+        self.orbit = Orbit::around(mesh.centre, mesh.radius, mesh.up.0);
         self.plane = None;
         self.runs = [None, None];
         self.verdicts = [Vec::new(), Vec::new()];
@@ -333,13 +394,19 @@ impl Model {
     }
 
     fn accept_run(&mut self, slot: Slot, run: RunScene) {
-        let points = run.points.iter().map(|p| (p.face, p.barycentric)).collect();
-        self.looker_queue.push_back(Job::Place(slot, points));
+        if let Some(source) = self.unseen.take() {
+            self.looker_queue.push_back(Job::Load(source.clone()));
+            self.judge_queue.push_back(Job::Load(source));
+        }
+        let points: Vec<_> = run.points.iter().map(|p| (p.face, p.barycentric)).collect();
+        self.looker_queue.push_back(Job::Place(slot, points.clone()));
+        self.stop_judging(|replaced| replaced == slot);
+        self.judge_queue.push_back(Job::Place(slot, points));
         self.looked = None;
         self.trail.clear();
         self.verdicts[slot.index()].clear();
         for measure in Measure::ALL {
-            self.queue.push_back(Job::Judge(slot, measure));
+            self.judge_queue.push_back(Job::Judge(slot, measure));
         }
         if slot == Slot::A {
             self.hover = None;
@@ -458,6 +525,12 @@ impl Model {
             "look": self.look.map(|l| json!({"surface": l.surface, "points": l.points})),
             "trail": self.trail.len(),
             "verdicts": self.verdicts[0].len(),
+            "up": self.orbit.up,
+            "obstacle": self.occluder.map(|o| [o.low, o.high]),
+            "plane": self.plane.map(|p| json!({"centre": p.centre, "halfHeight": p.half_height})),
+            "yaw": self.orbit.yaw,
+            "distance": self.orbit.distance,
+            "stage": self.stage.as_ref().map(|(name, share)| json!([name, share])),
             "notice": self.notice.as_ref().map(|n| match n {
                 Notice::Done(text) => json!({"done": text}),
                 Notice::Problem(text) => json!({"problem": text}),
@@ -474,15 +547,16 @@ mod tests {
     use crate::engine::Engine;
     use ldwrap::Silent;
 
-    /// Both engines, working at once in the test's own thread.
+    /// All engines, working at once in the test's own thread.
     struct Office {
         maker: Engine,
         looker: Engine,
+        judge: Engine,
     }
 
     impl Office {
         fn new() -> Self {
-            Self { maker: Engine::default(), looker: Engine::default() }
+            Self { maker: Engine::default(), looker: Engine::default(), judge: Engine::default() }
         }
 
         fn work(&mut self, model: &mut Model) {
@@ -494,6 +568,7 @@ mod tests {
                 for (desk, job) in jobs {
                     match desk {
                         Desk::Maker => model.receive(self.maker.handle(job, &Silent, &|| 0.0)),
+                        Desk::Judge => model.receive_verdict(self.judge.handle(job, &Silent, &|| 0.0)),
                         Desk::Looker => model.receive_look(self.looker.handle(job, &Silent, &|| 0.0)),
                     }
                 }
@@ -539,6 +614,20 @@ mod tests {
     }
 
     #[test]
+    fn of_two_methods_the_first_is_shown_first() {
+        let other = Some(Settings { method: Method::Hilbert, ..Settings::default() });
+        let mut model = Model::open(Some(Link { shape: "cube".into(), other, ..Link::default() }));
+        let mut engine = Engine::default();
+        for _ in 0..2 {
+            for (desk, job) in model.take_jobs() {
+                assert_eq!(desk, Desk::Maker);
+                model.receive(engine.handle(job, &Silent, &|| 0.0));
+            }
+        }
+        assert!(model.runs[0].is_some() && model.runs[1].is_none());
+    }
+
+    #[test]
     fn comparing_fills_the_second_slot() {
         let (mut model, mut office) = (Model::open(None), Office::new());
         office.work(&mut model);
@@ -572,7 +661,7 @@ mod tests {
         let job = model.take_jobs();
         assert!(matches!(job.as_slice(), [(Desk::Maker, Job::Wrap(..))]));
         model.cancel();
-        assert!(model.take_cancel());
+        assert_eq!(model.take_cancels(), [Desk::Maker]);
         model.receive(Answer::Cancelled);
         assert!(!model.is_busy());
         assert!(model.runs[0].is_some());

@@ -8,7 +8,10 @@ use ldwrap::unfold::{Strip, Strips};
 use ldwrap::{FaceId, Origin, RepairReport, SurfaceMesh};
 use serde::{Deserialize, Serialize};
 
+use crate::camera::Up;
 use crate::report::MeshReport;
+use crate::source::Source;
+use crate::upright::{self, Because};
 
 /// A checked mesh to draw.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,6 +24,8 @@ pub struct MeshScene {
     pub centre: Vec3,
     /// The radius of the ball around that middle that holds it.
     pub radius: f32,
+    /// Which axis points up, and why that is thought.
+    pub up: (Up, Because),
     /// Counts and area.
     pub report: MeshReport,
     /// What the check repaired, in words; empty for a clean mesh.
@@ -107,14 +112,19 @@ pub struct RunScene {
 
 impl MeshScene {
     /// The picture of a mesh.
-    pub fn new(name: &str, mesh: &SurfaceMesh, repaired: &RepairReport) -> Self {
+    pub fn new(source: &Source, mesh: &SurfaceMesh, repaired: &RepairReport) -> Self {
         let (low, high) = mesh.bounds();
         let corners: Vec<Vec3> =
             (0..mesh.face_count()).flat_map(|f| mesh.triangle(FaceId::new(f)).map(|p| p.as_vec3())).collect();
         let centre = (0.5 * (low + high)).as_vec3();
+        let up = match source {
+            Source::Shape(_) => (Up::Z, Because::Made),
+            Source::File { name, .. } => upright::guess(name, &corners),
+        };
         let radius = corners.iter().fold(0.0_f32, |m, p| m.max(p.distance(centre)));
         Self {
-            name: name.to_owned(),
+            name: source.name().to_owned(),
+            up,
             corners,
             centre,
             radius,
@@ -280,7 +290,6 @@ mod tests {
     use super::*;
     use crate::engine::{Answer, Engine, Job, Slot};
     use crate::settings::Settings;
-    use crate::source::Source;
     use ldwrap::Silent;
     use ldwrap::shapes::Shape;
 

@@ -1,7 +1,7 @@
 //! What a person sets: the library's options in a person's units, with a method; as JSON and as a link.
 
 use ldwrap::equalize::EqualizeOptions;
-use ldwrap::pipeline::{Options, Request};
+use ldwrap::pipeline::{Options, Request, Selection};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::sequence::Sequence;
 use serde::{Deserialize, Serialize};
@@ -65,7 +65,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        let Options { request, segment, sequence, seed, tolerance, equalize: _ } = Options::default();
+        let Options { request, segment, sequence, seed, tolerance, .. } = Options::default();
         Self {
             request,
             method: Method::default(),
@@ -94,8 +94,10 @@ impl Settings {
             },
             sequence: self.sequence,
             seed: self.seed,
+            selection: if paper { Selection::Sequence } else { Selection::Regions },
             tolerance: self.tolerance,
             equalize: equalize.then(EqualizeOptions::default),
+            ..Options::default()
         }
     }
 
@@ -119,6 +121,9 @@ pub struct Link {
     pub shape: String,
     /// The settings.
     pub settings: Settings,
+    /// Those of B, when two are compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub other: Option<Settings>,
 }
 
 impl Link {
@@ -148,10 +153,12 @@ mod tests {
             method: Method::Paper,
             ..Settings::default()
         };
-        let link = Link { shape: "cup".into(), settings };
-        let fragment = link.fragment();
-        assert!(fragment.chars().all(|c| c.is_ascii_alphanumeric() || c == '%'), "{fragment}");
-        assert_eq!(Link::from_fragment(&format!("#{fragment}")), Some(link));
+        for other in [None, Some(Settings { method: Method::Hilbert, ..Settings::default() })] {
+            let link = Link { shape: "cup".into(), settings: settings.clone(), other };
+            let fragment = link.fragment();
+            assert!(fragment.chars().all(|c| c.is_ascii_alphanumeric() || c == '%'), "{fragment}");
+            assert_eq!(Link::from_fragment(&format!("#{fragment}")), Some(link));
+        }
         assert_eq!(Link::from_fragment("#nonsense"), None);
     }
 
@@ -167,7 +174,7 @@ mod tests {
         let settings = Settings { method: Method::Paper, equalize: true, ..Settings::default() };
         let options = settings.options();
         assert_eq!(options.segment.order, GrowthOrder::BoundaryWalk);
-        assert_eq!(options.equalize, None);
+        assert_eq!((options.equalize, options.selection), (None, Selection::Sequence));
     }
 
     #[test]

@@ -10,3 +10,6 @@ try {
   message.textContent = `ldwrap could not start: ${error?.message ?? error}. It needs WebAssembly and WebGL 2.`;
   throw error;
 }
+
+// Browsers have it only at https and on the machine itself; elsewhere the page just needs its server.
+navigator.serviceWorker?.register("offline.js").catch((error) => console.warn(`not kept for offline use: ${error}`));

@@ -7,7 +7,7 @@ use std::time::Instant;
 use ldwrap::baseline::Baseline;
 use ldwrap::equalize::EqualizeOptions;
 use ldwrap::io::read_mesh;
-use ldwrap::pipeline::{self, Options, Request, Run};
+use ldwrap::pipeline::{self, Options, Request, Run, Selection};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::{CheckOptions, Origin, PolygonSoup, Sample, Silent, StripId, SurfaceMesh, SurfacePoint};
 
@@ -37,7 +37,7 @@ impl Way {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Walk => "wrap, paper's order",
-            Self::Flattest => "wrap, flattest first",
+            Self::Flattest => "wrap, not equalized",
             Self::Equalized => "equalized (default)",
             Self::Baseline(baseline) => baseline.name(),
         }
@@ -66,6 +66,7 @@ pub(crate) fn wrapped(mesh: &SurfaceMesh, way: Way, count: usize, seed: u64) -> 
         request: Request::Count(count),
         segment: SegmentOptions { order, ..SegmentOptions::default() },
         seed,
+        selection: if way == Way::Walk { Selection::Sequence } else { Selection::default() },
         equalize: (way == Way::Equalized).then(EqualizeOptions::default),
         ..Options::default()
     };
@@ -161,7 +162,7 @@ pub(crate) fn write(report: &mut Report, mesh: &SurfaceMesh, object: &Object) ->
         &rows,
     );
     report.say(&format!(
-        "`ldwrap-cli wrap {file} -n {} --no-equalize --growth boundary-walk --report -` (or `flattest-first`; any n of the \
+        "`ldwrap-cli wrap {file} -n {} --no-equalize --select sequence --growth boundary-walk --report -` (or without the last two options; any n of the \
          table).",
         paper[0].0
     ));

@@ -1,5 +1,6 @@
 //! `compare`: methods by measures.
 
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::Instant;
 
@@ -56,6 +57,7 @@ struct Candidate {
 /// Runs the command.
 pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
     let options = job::wrap_options(&args.segment, &args.sequence)?;
+    let seeds = job::seeds(args.sequence.seed, args.seeds)?;
     check_names(args)?;
     let mut targets = Targets::default();
     let plot = args.plot.as_deref().map(|path| targets.add("--plot", path));
@@ -70,7 +72,7 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
     }
     let methods = methods(args, &mesh, &name)?;
     let mut candidates = from_files(args, &mesh, &stages)?;
-    candidates.extend(placed(args, &methods, &mesh, &options, &stages)?);
+    candidates.extend(placed(args, &methods, &seeds, &mesh, &options, &stages)?);
     let trials = measured(&mesh, candidates, &stages);
     stages.finish();
     tell_blunt_views(&trials, &stages);
@@ -135,7 +137,9 @@ fn file_name(name: &str) -> String {
 /// Those that were asked for; else all that work on the mesh.
 fn methods(args: &CompareArgs, mesh: &SurfaceMesh, name: &str) -> Outcome<Vec<Method>> {
     let Some(asked) = &args.methods else {
-        return Ok(Method::ALL.into_iter().filter(|method| method.suits(mesh)).collect());
+        // Placing for views takes longer than all others together.
+        let quick = |method: &Method| *method != Method::ForViews && method.suits(mesh);
+        return Ok(Method::ALL.into_iter().filter(quick).collect());
     };
     match asked.iter().find(|method| !method.suits(mesh)) {
         Some(method) => Err(Failure::wrong_use(format!(
@@ -166,6 +170,7 @@ fn from_files(args: &CompareArgs, mesh: &SurfaceMesh, stages: &Stages) -> anyhow
 fn placed(
     args: &CompareArgs,
     methods: &[Method],
+    seeds: &RangeInclusive<u64>,
     mesh: &SurfaceMesh,
     options: &Options,
     stages: &Stages,
@@ -173,7 +178,7 @@ fn placed(
     let mut candidates = Vec::new();
     for &count in &args.counts {
         for &method in methods {
-            for seed in (args.sequence.seed..).take(args.seeds as usize) {
+            for seed in seeds.clone() {
                 let method_name = method.name();
                 stages.prefix(&format!("{method_name} n={count} seed {seed}: "));
                 let begin = Instant::now();

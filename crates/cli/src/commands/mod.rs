@@ -8,6 +8,7 @@ pub(crate) mod measure;
 pub(crate) mod plane;
 pub(crate) mod shape;
 pub(crate) mod strips;
+pub(crate) mod view;
 pub(crate) mod wrap;
 
 /// `1 point`, `2 points`.

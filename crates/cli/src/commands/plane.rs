@@ -35,10 +35,11 @@ pub(crate) fn run(args: &PlaneArgs) -> Outcome {
     let wanted = args.sequences.clone().unwrap_or_else(|| PlanarSet::ALL.to_vec());
     job::refuse_repeated("--count", &args.counts, u32::to_string)?;
     job::refuse_repeated("--sequence", &wanted, |set| set.name())?;
+    let seeds = job::seeds(args.seed, args.seeds)?;
     let mut sets = Vec::new();
     for &count in &args.counts {
         for &sequence in &wanted {
-            for seed in (args.seed..).take(args.seeds as usize) {
+            for seed in seeds.clone() {
                 match points(sequence, count, seed, args) {
                     Ok(places) => sets.push(PlaneSet {
                         sequence,

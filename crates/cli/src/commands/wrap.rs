@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use ldwrap::correct::Correction;
+use ldwrap::density::Density;
 use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{self, Options, Run};
 use ldwrap::{Progress, SurfacePoint};
@@ -19,6 +20,7 @@ use crate::points;
 use crate::progress::Stages;
 use crate::quality::Judge;
 use crate::report::{self, MeshReport, Report};
+use crate::weights;
 
 /// Runs the command.
 pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
@@ -30,9 +32,12 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    let run = pipeline::run(&input.mesh, &options, &stages).with_context(|| input.name.clone())?;
-    let files = write(&input, &options, &run, &outputs, &stages)?;
-    for line in summary(&input, &run) {
+    let density = weights::density(&args.weights, &input)?;
+    let run = pipeline::run_weighted(&input.mesh, &density, &options, &stages)
+        .with_context(|| input.name.clone())?;
+    let job = Job { input: &input, density: &density, options: &options };
+    let files = write(job, &run, &outputs, &stages)?;
+    for line in summary(&input, &options, &run) {
         stages.say(&line);
     }
     for file in files {
@@ -41,13 +46,16 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     Ok(())
 }
 
-fn write(
-    input: &Input,
-    options: &Options,
-    run: &Run,
-    wanted: &WrapOutputs,
-    stages: &Stages,
-) -> anyhow::Result<Vec<PathBuf>> {
+/// What was asked for.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    input: &'a Input,
+    density: &'a Density,
+    options: &'a Options,
+}
+
+fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
+    let Job { input, density, options } = job;
     let Input { mesh, repaired, .. } = input;
     let mut outputs = Outputs::default();
     if wanted.strips.is_some() || wanted.preview.is_some() {
@@ -71,13 +79,13 @@ fn write(
     });
     let seconds = stages.finish();
     if let Some(destination) = &wanted.report {
-        let report = Report::new(MeshReport::new(mesh, repaired), options, run, quality, seconds);
+        let report = Report::new(MeshReport::new(mesh, repaired), options, density, run, quality, seconds);
         outputs.stage(destination, report::json(&report)?)?;
     }
     outputs.commit()
 }
 
-fn summary(input: &Input, run: &Run) -> Vec<String> {
+fn summary(input: &Input, options: &Options, run: &Run) -> Vec<String> {
     let Input { name, mesh, .. } = input;
     let Irregularity { bound, refined, exact } = run.irregularity;
     let Correction { projected, removed } = run.correction;
@@ -91,6 +99,7 @@ fn summary(input: &Input, run: &Run) -> Vec<String> {
             run.d_m
         ),
         format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact"),
+        format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), options, run)),
         format!("corrected: {projected} projected, {removed} removed"),
     ];
     if let Some(equalize) = &run.equalize {

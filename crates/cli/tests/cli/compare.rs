@@ -157,6 +157,11 @@ fn nothing_is_named_twice() {
 fn wrong_use() {
     let folder = Folder::with_octahedron();
     folder.run("compare octahedron.obj -n 0").refused(&["--count"]);
+    folder.run("compare octahedron.obj -n 4294967295").refused(&["--count"]);
+    folder
+        .run("compare octahedron.obj -n 5 --methods random --seed 18446744073709551615 --seeds 2")
+        .refused(&["--seeds", "2 seeds from 18446744073709551615"]);
+    folder.run("compare octahedron.obj -n 5 --methods random --seed 18446744073709551614 --seeds 2 -q").ok();
     folder.run("compare octahedron.obj -n 5, --methods nonsense").refused(&["error"]);
     folder.run("compare octahedron.obj --methods nonsense").refused(&["nonsense", "hilbert"]);
     folder.run("compare octahedron.obj --seeds 0").refused(&["--seeds"]);

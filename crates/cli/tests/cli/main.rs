@@ -1,5 +1,6 @@
 //! Black-box tests of the program: what a person types, sees and gets.
 
+mod attributes;
 mod bad_input;
 mod common;
 mod compare;
@@ -8,5 +9,6 @@ mod outputs;
 mod plane;
 mod repairs;
 mod shape;
+mod view;
 mod wrap;
 mod wrong_use;

@@ -50,6 +50,7 @@ fn wrong_use_of_plane() {
     folder.run("plane -n 20 --sequence lattice").refused(&["20 is not a square number", "16 or 25"]);
     folder.run("plane -n 0").refused(&["--count"]);
     folder.run("plane -n 16,9,16").refused(&["--count", "16 is given twice"]);
+    folder.run("plane -n 16 --seed 18446744073709551615 --seeds 2").refused(&["--seeds", "2 seeds from"]);
     folder.run("plane --sequence r2,r2").refused(&["--sequence", "r2 is given twice"]);
     folder.run("plane --bases 3").refused(&["--sequence"]);
     folder.run("plane --sequence r2 --bases 3").refused(&["--bases"]);
@@ -95,6 +96,10 @@ fn the_bounds_hold_on_a_sphere() {
     for column in ["f_d", "eq. 6", "eq. 7", "measured sup"] {
         assert!(text.text().contains(column), "{}", text.text());
     }
+    // A domain without points has no discrepancy.
+    folder.run("shape cube -o cube.obj -q").ok();
+    let few = folder.run("bound cube.obj -n 1 -q").ok();
+    assert!(few.text().contains(" - ") && !few.text().contains("NaN"), "{}", few.text());
     folder.run("bound sphere.obj -n 9,9").refused(&["--count", "9 is given twice"]);
     folder.run("bound none.obj -n 9").failed(&["none.obj"]);
 }

@@ -108,8 +108,8 @@ fn segmentation_options_reach_the_segmentation() {
     };
     // Neighbours of the octahedron meet at 70.5 degrees between their normals.
     assert_eq!(strips("--flatness-angle 80"), 1);
-    assert!(strips("--flatness-angle 60 --smallest-share 0") > 1);
-    for growth in ["boundary-walk", "flattest-first", "longest-first"] {
+    assert!(strips("--growth flattest-first --flatness-angle 60 --smallest-share 0") > 1);
+    for growth in ["least-open", "boundary-walk", "flattest-first", "longest-first"] {
         assert_eq!(strips(&format!("--growth {growth} --flatness-angle 80")), 1);
     }
 }
@@ -142,7 +142,10 @@ fn the_report_has_its_keys() {
         .ok();
     let report = folder.json("r.json");
     let keys = |value: &Value| value.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
-    assert_eq!(keys(&report), ["irregularity", "mesh", "options", "points", "seconds", "strips", "version"]);
+    assert_eq!(
+        keys(&report),
+        ["irregularity", "mesh", "open_border", "options", "points", "seconds", "strips", "version"]
+    );
     assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(
         keys(&report["mesh"]),
@@ -159,8 +162,11 @@ fn the_report_has_its_keys() {
             "tolerance": 0.1,
             "flatness_angle": 25.5,
             "smallest_share": 0.002,
-            "growth": "flattest-first",
-            "equalize": false,
+            "growth": "least-open",
+            "selection": "regions",
+            "equalize": null,
+            "order": "sequence",
+            "weighted": false,
         })
     );
     let number = |value: &Value| value.as_f64().expect("a number");
@@ -171,6 +177,8 @@ fn the_report_has_its_keys() {
     assert!((sum("area") - OCTAHEDRON_AREA).abs() < 1e-9);
     assert!((number(&report["mesh"]["area"]) - OCTAHEDRON_AREA).abs() < 1e-12);
     assert!(sum("open_border_length") <= sum("border_length"));
+    let open = sum("open_border_length") / OCTAHEDRON_AREA.sqrt();
+    assert!((number(&report["open_border"]) - open).abs() < 1e-9);
     assert!((number(&report["points"]["d_m"]) - (OCTAHEDRON_AREA / 335.0).sqrt()).abs() < 1e-12);
     assert!(number(&report["irregularity"]["exact"]) <= 1.0);
     let seconds = keys(&report["seconds"]);
@@ -184,11 +192,104 @@ fn the_report_has_its_keys() {
 fn equalizing_is_on_and_reported() {
     let folder = Folder::with_octahedron();
     let report = folder.run("wrap octahedron.obj -n 100 --report - -q").ok().json();
-    assert_eq!(report["options"]["equalize"], true);
+    assert_eq!(report["options"]["equalize"]["rounds"], 6);
     let spread = |key: &str| report["equalize"][key].as_f64().expect("a number");
     assert!(spread("spread_after") < spread("spread_before"));
     assert!(spread("moved") > 0.0);
     assert!(report["seconds"]["equalize"].is_number());
+}
+
+#[test]
+fn weights_move_points_to_where_they_are() {
+    let folder = Folder::with_octahedron();
+    // The face of the file's first line weighs as much as the seven others together.
+    folder.write("faces.csv", "face,weight\n0,7\n1,1\n2,1\n3,1\n4,1\n5,1\n6,1\n7,1\n");
+    let count = |options: &str| {
+        let run = format!("wrap octahedron.obj -n 100 --no-equalize {options} -o - --format xyz");
+        let ran = folder.run(&run).ok();
+        let points = rows(ran.text());
+        assert_eq!(points.len(), 100);
+        points.iter().filter(|p| p[0] > 0.0 && p[1] > 0.0 && p[2] > 0.0).count()
+    };
+    assert!((49..=51).contains(&count("--weights faces.csv")));
+    assert!((49..=51).contains(&count("--weights faces.csv --weights-of faces")));
+    let ran = folder.run("wrap octahedron.obj -n 100 --weights faces.csv -o - --format xyz").ok();
+    let equalized = rows(ran.text()).iter().filter(|p| p[0] > 0.0 && p[1] > 0.0 && p[2] > 0.0).count();
+    assert!((48..=52).contains(&equalized), "{equalized}");
+    // All weight at one vertex: its four faces get everything.
+    folder.write("vertices.txt", "0\n0\n0\n0\n1\n0\n");
+    let ran =
+        folder.run("wrap octahedron.obj -n 50 --no-equalize --weights vertices.txt -o - --format xyz").ok();
+    assert!(rows(ran.text()).iter().all(|p| p[2] >= 0.0));
+    let report = folder.run("wrap octahedron.obj -n 9 --weights vertices.txt --report - -q").ok().json();
+    assert_eq!(report["options"]["weighted"], true);
+}
+
+#[test]
+fn weights_that_do_not_fit_are_refused() {
+    let folder = Folder::with_octahedron();
+    folder.write("seven.txt", "1\n".repeat(7));
+    folder.run("wrap octahedron.obj --weights seven.txt").failed(&[
+        "seven.txt",
+        "7 weights",
+        "6 vertices",
+        "8 faces",
+    ]);
+    folder
+        .run("wrap octahedron.obj --weights seven.txt --weights-of faces")
+        .failed(&["7 weights for 8 polygons"]);
+    folder.write("zero.txt", "0\n".repeat(8));
+    folder.run("wrap octahedron.obj --weights zero.txt").failed(&["zero"]);
+    folder.write("minus.txt", format!("{}-1\n", "1\n".repeat(7)));
+    folder.run("wrap octahedron.obj --weights minus.txt").failed(&["-1", "7"]);
+    folder.write("words.txt", "1\ntwo\n");
+    folder.run("wrap octahedron.obj --weights words.txt").failed(&["line 2", "two"]);
+    folder.run("wrap octahedron.obj --weights none.txt").failed(&["none.txt"]);
+    folder.run("wrap octahedron.obj --weights-of faces").refused(&["--weights"]);
+    // As many vertices as faces.
+    folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    folder.write("four.txt", "1\n2\n3\n4\n");
+    folder.run("wrap t.obj --weights four.txt").failed(&["--weights-of"]);
+    folder.run("wrap t.obj -n 5 --weights four.txt --weights-of vertices -o p.xyz").ok();
+}
+
+#[test]
+fn more_extensible_points_contain_fewer() {
+    let folder = Folder::with_octahedron();
+    for sequence in ["halton", "sobol", "r2"] {
+        let run = |n: usize| {
+            let options = format!("--select extensible --sequence {sequence} --seed 2");
+            folder.run(&format!("wrap octahedron.obj -n {n} {options} -o - --format xyz")).ok()
+        };
+        let (few, many) = (run(20), run(90));
+        assert_eq!(few.text().lines().count(), 20);
+        assert!(many.text().starts_with(few.text()), "{sequence}");
+    }
+    folder.run("wrap octahedron.obj --select extensible").refused(&["Hammersley", "Halton"]);
+    folder.run("wrap octahedron.obj --select extensible --sequence fibonacci").refused(&["Fibonacci"]);
+    folder
+        .run("wrap octahedron.obj --select extensible --sequence r2 --order progressive")
+        .refused(&["extensible points cannot be put in another order"]);
+}
+
+#[test]
+fn the_progressive_order_has_the_same_points() {
+    let folder = Folder::with_octahedron();
+    let lines = |order: &str| {
+        let ran = folder.run(&format!("wrap octahedron.obj -n 64 --order {order} -o - --format xyz")).ok();
+        ran.text().lines().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let (plain, ordered) = (lines("sequence"), lines("progressive"));
+    assert_ne!(plain, ordered);
+    let sorted = |mut lines: Vec<String>| {
+        lines.sort();
+        lines
+    };
+    // The first eight points lie on eight faces, or nearly.
+    let octants: std::collections::BTreeSet<Vec<bool>> =
+        rows(&ordered[..8].join("\n")).iter().map(|p| p.iter().map(|x| *x > 0.0).collect()).collect();
+    assert!(octants.len() >= 6, "{octants:?}");
+    assert_eq!(sorted(plain), sorted(ordered));
 }
 
 #[test]
@@ -207,4 +308,36 @@ fn the_horse() {
     assert!(strips.len() <= 28, "{} strips", strips.len());
     let largest = strips.iter().map(|s| s["faces"].as_u64().expect("a count")).max();
     assert!(largest >= Some(93_754), "{largest:?}");
+}
+
+#[test]
+fn points_for_views_are_made_and_reported() {
+    let folder = Folder::with_octahedron();
+    let run =
+        |options: &str| folder.run(&format!("wrap octahedron.obj -n 40 --report - -q {options}")).ok().json();
+    let everywhere = run("--for-views --views 64");
+    assert_eq!(everywhere["options"]["equalize"]["for_views"]["cameras"], "around");
+    let cone = run("--for-views --views 64 --view-from 0,-1,2 --view-angle 20 --view-distance 5");
+    assert_eq!(cone["options"]["equalize"]["for_views"]["cameras"]["cone"]["distance"], 5.0);
+    assert!(run("")["options"]["equalize"]["for_views"].is_null());
+}
+
+#[test]
+fn what_makes_no_sense_for_views_is_refused() {
+    let folder = Folder::with_octahedron();
+    for options in [
+        "--for-views --no-equalize",
+        "--views 10",
+        "--view-from 0,0,1",
+        "--for-views --view-from 0,0",
+        "--for-views --view-from 0,0,0",
+        "--for-views --view-from 0,nan,1",
+        "--for-views --view-from 0,0,1 --view-angle 181",
+        "--for-views --view-from 0,0,1 --view-distance 0",
+        "--for-views --views 0",
+        "--for-views --select extensible --sequence halton",
+    ] {
+        let ran = folder.run(&format!("wrap octahedron.obj -n 10 {options}"));
+        assert_eq!(ran.code, 2, "{options}: {}", ran.stderr);
+    }
 }

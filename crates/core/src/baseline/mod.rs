@@ -42,9 +42,9 @@ pub enum Baseline {
 
 /// A lattice on the sphere was asked for on a mesh that is not a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("the mesh is not a sphere: its vertices lie between {nearest} and {farthest} from its middle")]
+#[error("the mesh is not a sphere: its surface lies between {nearest} and {farthest} from its middle")]
 pub struct NotASphere {
-    /// The smallest distance of a vertex from the middle of the box around the mesh, in its units.
+    /// The smallest distance of the surface from the middle of the box around the mesh, in its units.
     pub nearest: f64,
     /// The largest.
     pub farthest: f64,

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::{NotASphere, purpose};
+use crate::geometry::triangle;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::random::Random;
@@ -61,20 +62,26 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// The sphere that the vertices of the mesh lie on, to a hundredth of the radius.
+    /// The sphere that the vertices of the mesh lie on, to a hundredth of the radius, and the faces between them to a
+    /// tenth: the corners of a cube alone make no sphere.
     ///
     /// # Errors
     /// [`NotASphere`] when they do not.
     pub fn of(mesh: &SurfaceMesh) -> Result<Self, NotASphere> {
         let (low, high) = mesh.bounds();
         let middle = low * 0.5 + high * 0.5;
-        let (mut nearest, mut farthest) = (f64::INFINITY, 0.0f64);
-        for &vertex in mesh.topology().faces().iter().flatten() {
-            let distance = mesh.position(vertex).distance(middle);
-            nearest = nearest.min(distance);
-            farthest = farthest.max(distance);
+        let (mut nearest, mut nearest_vertex, mut farthest) = (f64::INFINITY, f64::INFINITY, 0.0f64);
+        for face in mesh.topology().face_ids() {
+            let [a, b, c] = mesh.triangle(face);
+            for vertex in [a, b, c] {
+                let distance = vertex.distance(middle);
+                nearest_vertex = nearest_vertex.min(distance);
+                farthest = farthest.max(distance);
+            }
+            let foot = triangle::at(a, b, c, triangle::nearest(a, b, c, middle));
+            nearest = nearest.min(foot.distance(middle));
         }
-        if nearest >= 0.99 * farthest && farthest > 0.0 {
+        if nearest_vertex >= 0.99 * farthest && nearest >= 0.9 * farthest && farthest > 0.0 {
             Ok(Self { middle, radius: farthest })
         } else {
             Err(NotASphere { nearest, farthest })

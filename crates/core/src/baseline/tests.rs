@@ -57,6 +57,10 @@ fn lattices_on_the_sphere_want_a_sphere() {
         let error = method.place(&cube, 10, 0).expect_err("a cube is no sphere");
         assert!((error.farthest - 0.75f64.sqrt()).abs() < 1e-15 && (error.nearest - 0.5).abs() < 1e-15);
     }
+    // The corners of a cube alone lie on a sphere, and so do those of any triangle.
+    for flat in [shapes::cube(1), shapes::square(1)] {
+        assert!(Baseline::SphereFibonacci.place(&mesh(&flat), 10, 0).is_err());
+    }
 }
 
 #[test]

@@ -1,9 +1,11 @@
 //! Hierarchical balancing: surface and points are split together, again and again across the widest extent, so that
 //! mass and number of points agree on both sides; at the end every point owns a region of equal mass.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
-/// A tile or a point in the space of positions and scaled normals.
+/// A clump of clumps or a point in the space of positions and scaled normals.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub(super) position: DVec3,
@@ -19,79 +21,68 @@ impl Item {
     }
 }
 
-/// A point's region.
-#[derive(Clone, Copy, Debug)]
+/// A piece of the surface with the points that are due there: one, or more where it is a single clump.
+#[derive(Clone, Debug)]
 pub(super) struct Region {
-    /// The point.
-    pub(super) point: u32,
-    /// The centroid of its region.
-    pub(super) position: DVec3,
-    /// The mean scaled normal of its region.
-    pub(super) normal: DVec3,
+    /// Which clumps, in their new order.
+    pub(super) clumps: Range<usize>,
+    /// Which points, in their new order.
+    pub(super) points: Range<usize>,
 }
 
-/// Below this many tiles a piece is not worth another thread.
+/// Below this many clumps a piece is not worth another thread.
 #[cfg(feature = "parallel")]
-const ALONE: usize = 1 << 12;
+const ALONE: usize = 1 << 11;
 
-/// Shares out the tiles over the points; one region for each point. O(tiles log points).
-pub(super) fn balance(tiles: &mut [Item], points: &mut [Item], regions: &mut [Region]) {
-    debug_assert_eq!(points.len(), regions.len());
-    match points {
-        [] => return,
-        [point] => {
-            regions[0] = region(tiles, point);
-            return;
-        }
-        _ => {}
-    }
-    if tiles.len() < 2 {
-        // Fewer tiles than points: the points keep their places.
-        for (region, point) in regions.iter_mut().zip(points.iter()) {
-            *region = Region { point: point.id, position: point.position, normal: point.normal };
-        }
+/// Shares out the clumps over the points: reorders both so that each region's stand together.
+///
+/// O(clumps log points).
+pub(super) fn balance(clumps: &mut [Item], points: &mut [Item]) -> Vec<Region> {
+    let mut regions = Vec::with_capacity(points.len());
+    share(clumps, points, [0, 0], &mut regions);
+    regions
+}
+
+/// `starts` says where the two slices stand in the whole.
+fn share(clumps: &mut [Item], points: &mut [Item], starts: [usize; 2], regions: &mut Vec<Region>) {
+    if points.is_empty() {
         return;
     }
-    let axis = widest_axis(tiles);
+    if points.len() < 2 || clumps.len() < 2 {
+        let [clump, point] = starts;
+        regions.push(Region { clumps: clump..clump + clumps.len(), points: point..point + points.len() });
+        return;
+    }
+    let axis = widest_axis(clumps);
     let lower = points.len() / 2;
-    let total: f64 = tiles.iter().map(|t| t.mass).sum();
-    let cut = split_by_mass(tiles, axis, total * lower as f64 / points.len() as f64);
+    let total: f64 = clumps.iter().map(|t| t.mass).sum();
+    let cut = split_by_mass(clumps, axis, total * lower as f64 / points.len() as f64);
     points.select_nth_unstable_by(lower, |a, b| {
         a.coordinate(axis).total_cmp(&b.coordinate(axis)).then(a.id.cmp(&b.id))
     });
-    let (tiles_below, tiles_above) = tiles.split_at_mut(cut);
+    let (clumps_below, clumps_above) = clumps.split_at_mut(cut);
     let (points_below, points_above) = points.split_at_mut(lower);
-    let (regions_below, regions_above) = regions.split_at_mut(lower);
+    let behind = [starts[0] + cut, starts[1] + lower];
     #[cfg(feature = "parallel")]
-    if tiles_below.len() > ALONE {
+    if clumps_below.len() > ALONE {
+        let mut above = Vec::with_capacity(points_above.len());
         rayon::join(
-            || balance(tiles_below, points_below, regions_below),
-            || balance(tiles_above, points_above, regions_above),
+            || share(clumps_below, points_below, starts, regions),
+            || share(clumps_above, points_above, behind, &mut above),
         );
+        regions.append(&mut above);
         return;
     }
-    balance(tiles_below, points_below, regions_below);
-    balance(tiles_above, points_above, regions_above);
-}
-
-fn region(tiles: &[Item], point: &Item) -> Region {
-    let mass: f64 = tiles.iter().map(|t| t.mass).sum();
-    if mass <= 0.0 {
-        return Region { point: point.id, position: point.position, normal: point.normal };
-    }
-    let position = tiles.iter().map(|t| t.position * t.mass).sum::<DVec3>() / mass;
-    let normal = tiles.iter().map(|t| t.normal * t.mass).sum::<DVec3>() / mass;
-    Region { point: point.id, position, normal }
+    share(clumps_below, points_below, starts, regions);
+    share(clumps_above, points_above, behind, regions);
 }
 
 fn widest_axis(items: &[Item]) -> usize {
     let mut low = [DVec3::INFINITY; 2];
     let mut high = [DVec3::NEG_INFINITY; 2];
     for item in items {
-        for (k, v) in [item.position, item.normal].into_iter().enumerate() {
-            low[k] = low[k].min(v);
-            high[k] = high[k].max(v);
-        }
+        low = [low[0].min(item.position), low[1].min(item.normal)];
+        high = [high[0].max(item.position), high[1].max(item.normal)];
     }
     let extent = |axis: usize| (high[axis / 3] - low[axis / 3])[axis % 3];
     (0..6).fold(0, |best, axis| if extent(axis) > extent(best) { axis } else { best })

@@ -6,33 +6,24 @@
 use glam::DVec3;
 
 use super::diagram::{Border, Diagram};
-use super::sites::Site;
+use super::near::Site;
 
 /// Changes of the weights that bring the cells' masses to `wanted`, to first order, when the sites move by `moves` at
-/// the same time; each at most `most` in size.
+/// the same time.
 ///
 /// A border between two sites moves by the mean of their moves, so what the moves do to the masses is known before
 /// they are made. Without this term large waves of moves and weights answer each other and do not die away.
-pub(super) fn weight_steps(
-    diagram: &Diagram,
-    sites: &[Site],
-    moves: &[DVec3],
-    wanted: &[f64],
-    most: f64,
-) -> Vec<f64> {
+pub(super) fn weight_steps(diagram: &Diagram, sites: &[Site], moves: &[DVec3], wanted: &[f64]) -> Vec<f64> {
     let mut missing: Vec<f64> = wanted.iter().zip(&diagram.cells).map(|(w, c)| w - c.mass).collect();
     for border in &diagram.borders {
         let (a, b) = (border.a as usize, border.b as usize);
-        let passed = border.flow * (moves[a] + moves[b]).dot(sites[b].position - sites[a].position);
+        let passed =
+            border.flow * (moves[a] + moves[b]).dot(sites[b].place.position - sites[a].place.position);
         missing[a] -= passed;
         missing[b] += passed;
     }
     level_parts(&mut missing, &diagram.borders);
-    let mut steps = Laplacian::new(diagram.cells.len(), &diagram.borders).solve(&missing);
-    for step in &mut steps {
-        *step = step.clamp(-most, most);
-    }
-    steps
+    Laplacian::new(diagram.cells.len(), &diagram.borders).solve(&missing)
 }
 
 /// Takes its mean from each part of the cells that no border joins to another part. A patch may fall into parts whose

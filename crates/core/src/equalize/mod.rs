@@ -5,45 +5,57 @@
 
 mod balance;
 mod capacity;
+mod clip;
 mod diagram;
+mod layout;
+mod near;
 mod normals;
 mod patches;
+mod places;
 mod relax;
-mod sites;
+mod spacing;
 mod tiles;
+mod views;
 
 #[cfg(test)]
 mod tests;
 
 use glam::DVec3;
 
+use crate::density::Density;
 use crate::geometry::triangle;
-use crate::ids::{FaceId, StripId};
+use crate::ids::StripId;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::progress::Progress;
 use crate::sample::SurfacePoint;
-use balance::{Item, Region, balance};
+use balance::Item;
 use diagram::{diagram, owned_tiles};
+use layout::{Due, Layout, Place, lay_out};
+use near::{Near, Site};
 use patches::Patches;
-use relax::relax;
-use sites::{Candidates, Site};
-use tiles::Tiles;
+use places::Spot;
+use relax::{Relaxed, relax};
+use tiles::{Scale, tiles};
+
+pub use views::{Cameras, ForViews};
 
 /// How points are equalized.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EqualizeOptions {
-    /// Rounds of relaxation. More come closer to equal cells; the time is proportional. Default: 20.
+    /// Rounds of relaxation. More come closer to equal cells; the time is proportional. Default: 6.
     pub rounds: u32,
     /// What a difference of normals counts for: the length of a unit of normal, in d_m. Keeps the two sides of sheets
     /// thinner than about twice this apart; more costs evenness. Default: 0.4.
     pub bend: f64,
+    /// After that, the place in its cell that serves views best; costs some evenness. Default: `None`.
+    pub for_views: Option<ForViews>,
 }
 
 impl Default for EqualizeOptions {
     fn default() -> Self {
-        Self { rounds: 20, bend: 0.4 }
+        Self { rounds: 6, bend: 0.4, for_views: None }
     }
 }
 
@@ -70,20 +82,18 @@ pub struct Equalized {
     pub report: EqualizeReport,
 }
 
-/// Tiles are cut so that no side is longer than this many d_m.
-const TILE: f64 = 0.7;
-
-/// A point nearer than this many d_m to the centroid of its balanced region starts from where it is.
+/// A point nearer than this many d_m to the centre of the block where it is due starts from where it is.
 const KEEP: f64 = 0.4;
 
-/// Moves points along the surface until each stands for the same area; `strip_of_face` says which segment each face
-/// belongs to. Hears cancellation between rounds.
+/// Moves points along the surface until each stands for the same mass: area times density. `strip_of_face` says which
+/// segment each face belongs to. Hears cancellation between rounds.
 ///
 /// Cost: O((F + n) (rounds + log n)).
 pub fn equalize(
     mesh: &SurfaceMesh,
     points: &[SurfacePoint],
     strip_of_face: &[StripId],
+    density: &Density,
     options: &EqualizeOptions,
     progress: &dyn Progress,
 ) -> Equalized {
@@ -92,34 +102,53 @@ pub fn equalize(
         let report = EqualizeReport { spread_before: 0.0, spread_after: 0.0, moved: 0.0 };
         return Equalized { points: Vec::new(), cells: Vec::new(), report };
     }
-    let mass = mesh.face_areas();
     let d_m = libm::sqrt(mesh.area() / n as f64);
-    let bend = options.bend * d_m;
-    let patches = Patches::new(mesh, strip_of_face, mass, n);
-    let tiles = Tiles::cut(mesh, &patches.of_face, |_| 1.0, bend, TILE * d_m, TILE * d_m);
-    let start = start(mesh, &tiles, &patches, points, d_m, bend);
-    let sites_at =
-        |start: &Start| Site { position: mesh.locate(&points[start.point as usize]), ..start.site };
-    let spread_before = spread(&nearest_cells(&tiles, start.iter().map(sites_at).collect(), d_m));
+    let (low, high) = mesh.bounds();
+    let scale = Scale { density, d_m, bend: options.bend, middle: (low + high) * 0.5 };
+    let patches = Patches::new(mesh, strip_of_face, &density.face_masses(mesh), n);
+    let places: Vec<DVec3> = parallel::map(n, |i| mesh.locate(&points[i]) - scale.middle);
+    let tiles = tiles(mesh, &patches.of_face, &scale);
+    let items = items(mesh, &patches, points, &places, options.bend * d_m);
+    let (layout, dues) = lay_out(tiles, &patches.counts, items);
+    let sites = |at: &dyn Fn(&Due) -> DVec3| -> Vec<Site> {
+        let site = |due: &Due| {
+            let block = &layout.blocks[due.block as usize];
+            let place = Place { position: at(due), ..block.centre };
+            Site { place, weight: 0.0, patch: block.patch, distance: block.distance }
+        };
+        dues.iter().map(site).collect()
+    };
+    let spread_before = spread(&nearest_cells(&layout, &sites(&|due| places[due.point as usize])));
+    let start = sites(&|due| {
+        let block = &layout.blocks[due.block as usize];
+        let (own, centre) = (places[due.point as usize], block.centre.position);
+        // A point that lies well in its block stays: that is what a good wrapping saves. Of several points that share
+        // a block each stays, so that they do not fall together.
+        let stays = own.distance(centre) <= KEEP * block.distance || block.points > 1;
+        if stays { own } else { centre }
+    });
     let mut patch_mass = vec![0.0; patches.counts.len()];
-    for tile in &tiles.tiles {
+    for tile in &layout.tiles {
         patch_mass[tile.patch as usize] += tile.mass;
     }
-    let wanted: Vec<f64> = start
-        .iter()
-        .map(|s| patch_mass[s.site.patch as usize] / patches.counts[s.site.patch as usize] as f64)
-        .collect();
-    let sites = start.iter().map(|s| s.site).collect();
-    let relaxed = relax(&tiles, sites, &wanted, d_m, options.rounds, progress);
-    let settled = settle(mesh, &tiles, &relaxed);
+    let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
+    let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
+    let relaxed = relax(&layout, start, &wanted, options.rounds, progress);
+    let mut settled = settle(&layout, &relaxed);
+    spacing::make_way(&layout, &relaxed, &mut settled);
+    if let Some(options) = &options.for_views {
+        views::choose(mesh, scale.middle, &layout, &relaxed, &mut settled, options, progress);
+    }
     let mut moved = 0.0;
     let mut result = points.to_vec();
     let mut cells = vec![0.0; n];
-    for ((start, place), cell) in start.iter().zip(settled).zip(&relaxed.diagram.cells) {
-        let slot = start.point as usize;
+    for ((due, place), cell) in dues.iter().zip(settled).zip(&relaxed.diagram.cells) {
+        let slot = due.point as usize;
         cells[slot] = cell.mass;
-        if let Some(point) = place {
-            moved += mesh.locate(&point).distance_squared(mesh.locate(&points[slot]));
+        if let Some(Spot { face, place }) = place {
+            let [a, b, c] = mesh.triangle(face);
+            let point = SurfacePoint { face, barycentric: triangle::nearest(a, b, c, place + scale.middle) };
+            moved += (mesh.locate(&point) - scale.middle).distance_squared(places[slot]);
             result[slot] = point;
         }
     }
@@ -131,88 +160,50 @@ pub fn equalize(
     Equalized { points: result, cells, report }
 }
 
-/// The masses of the cells of places that no weights correct.
-fn nearest_cells(tiles: &Tiles, sites: Vec<Site>, d_m: f64) -> Vec<f64> {
-    let candidates = Candidates::find(tiles, &sites, d_m, 0.0);
-    diagram(tiles, &candidates, &sites).cells.iter().map(|c| c.mass).collect()
+/// The masses of the cells of sites without weights.
+fn nearest_cells(layout: &Layout, sites: &[Site]) -> Vec<f64> {
+    diagram(layout, &Near::find(layout, sites), sites).cells.iter().map(|c| c.mass).collect()
 }
 
-/// A site and the point that it moves.
-struct Start {
-    point: u32,
-    site: Site,
-}
-
-/// Shares out the points over the patches and balances them in each.
-fn start(
+/// The points in the order of their patches; what one patch has too many of, the next ones get.
+fn items(
     mesh: &SurfaceMesh,
-    tiles: &Tiles,
     patches: &Patches,
     points: &[SurfacePoint],
-    d_m: f64,
+    places: &[DVec3],
     bend: f64,
-) -> Vec<Start> {
-    let count = patches.counts.len();
-    let mut items: Vec<Vec<Item>> = vec![Vec::new(); count];
-    for (id, tile) in (0..).zip(&tiles.tiles) {
-        let normal = tile.normal();
-        items[tile.patch as usize].push(Item { position: tile.centre(), normal, mass: tile.mass, id });
-    }
-    // Points in the order of their patches; what one patch has too many of, the next ones get.
+) -> Vec<Item> {
     let mut order: Vec<(u32, u32)> =
         (0..).zip(points).map(|(i, p)| (patches.of_face[p.face.index()].unwrap_or(0), i)).collect();
     order.sort_unstable();
-    let place = |i: u32| mesh.locate(&points[i as usize]);
-    let mut next = order.into_iter().map(|(_, i)| Item {
-        position: place(i),
-        normal: mesh.face_normal(points[i as usize].face) * bend,
+    let item = |(_, id): (u32, u32)| Item {
+        position: places[id as usize],
+        normal: mesh.face_normal(points[id as usize].face) * bend,
         mass: 0.0,
-        id: i,
-    });
-    let mut jobs: Vec<(Vec<Item>, Vec<Item>)> = items
-        .into_iter()
-        .zip(&patches.counts)
-        .map(|(tiles, &k)| (tiles, next.by_ref().take(k).collect()))
-        .collect();
-    let mut starts = Vec::with_capacity(points.len());
-    for (patch, (tiles, points)) in (0..).zip(&mut jobs) {
-        let mut regions = vec![Region { point: 0, position: DVec3::ZERO, normal: DVec3::ZERO }; points.len()];
-        balance(tiles, points, &mut regions);
-        starts.extend(regions.into_iter().map(|region| {
-            let own = place(region.point);
-            // A point that lies well in its region stays: that is what a good wrapping saves.
-            let stays = own.distance_squared(region.position) <= KEEP * KEEP * d_m * d_m;
-            let position = if stays { own } else { region.position };
-            Start { point: region.point, site: Site { position, normal: region.normal, weight: 0.0, patch } }
-        }));
-    }
-    starts
+        id,
+    };
+    order.into_iter().map(item).collect()
 }
 
-/// The point of each cell's tiles that lies nearest to its centroid; `None` for an empty cell.
-fn settle(mesh: &SurfaceMesh, tiles: &Tiles, relaxed: &relax::Relaxed) -> Vec<Option<SurfacePoint>> {
-    let mut best: Vec<Option<(f64, FaceId, DVec3)>> = vec![None; relaxed.sites.len()];
-    for (site, tile) in owned_tiles(tiles, &relaxed.candidates, &relaxed.sites) {
+/// The place of each cell's tiles that lies nearest to its centroid; `None` for an empty cell.
+fn settle(layout: &Layout, relaxed: &Relaxed) -> Vec<Option<Spot>> {
+    let mut best: Vec<Option<(f64, Spot)>> = vec![None; relaxed.sites.len()];
+    for (site, tile) in owned_tiles(layout, &relaxed.near, &relaxed.sites) {
         let cell = &relaxed.diagram.cells[site as usize];
         if cell.mass <= 0.0 {
             continue;
         }
-        let centroid = cell.moment / cell.mass;
-        let tile = &tiles.tiles[tile as usize];
+        let centroid = cell.moment.position / cell.mass;
+        let tile = &layout.tiles[tile as usize];
         let [a, b, c] = tile.corners;
-        let nearest = triangle::at(a, b, c, triangle::nearest(a, b, c, centroid));
-        let distance = nearest.distance_squared(centroid);
+        let place = triangle::at(a, b, c, triangle::nearest(a, b, c, centroid));
+        let distance = place.distance_squared(centroid);
         let best = &mut best[site as usize];
         if best.is_none_or(|b| distance < b.0) {
-            *best = Some((distance, tile.face, nearest));
+            *best = Some((distance, Spot { face: tile.face, place }));
         }
     }
-    parallel::map(best.len(), |i| {
-        best[i].map(|(_, face, place)| {
-            let [a, b, c] = mesh.triangle(face);
-            SurfacePoint { face, barycentric: triangle::nearest(a, b, c, place) }
-        })
-    })
+    best.into_iter().map(|best| best.map(|(_, spot)| spot)).collect()
 }
 
 /// Standard deviation over mean.

@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 
-use super::{EqualizeOptions, Equalized, equalize};
+use super::{Cameras, EqualizeOptions, Equalized, ForViews, equalize};
 use crate::baseline;
+use crate::density::Density;
 use crate::ids::StripId;
+use crate::measure;
 use crate::mesh::{CheckOptions, PolygonSoup, SurfaceMesh, shapes};
 use crate::progress::Silent;
 use crate::sample::SurfacePoint;
@@ -15,7 +17,8 @@ fn mesh(soup: &PolygonSoup) -> SurfaceMesh {
 
 fn equalized(mesh: &SurfaceMesh, points: &[SurfacePoint], rounds: u32) -> Equalized {
     let strips = vec![StripId(0); mesh.face_count()];
-    equalize(mesh, points, &strips, &EqualizeOptions { rounds, ..EqualizeOptions::default() }, &Silent)
+    let options = EqualizeOptions { rounds, ..EqualizeOptions::default() };
+    equalize(mesh, points, &strips, &Density::UNIFORM, &options, &Silent)
 }
 
 fn worst_share(cells: &[f64]) -> f64 {
@@ -123,4 +126,99 @@ fn equal_points_and_any_number_are_taken() {
         assert!(point.barycentric.iter().all(|w| *w >= 0.0));
     }
     assert!(equalized(&cup, &[], 5).points.is_empty());
+}
+
+#[test]
+fn a_plate_keeps_its_points_apart() {
+    // 2% of a distance of the points thick: centroids of cells on the two sides may fall together.
+    let plate = mesh(&shapes::plate(12, 1e-3));
+    for seed in 1..4 {
+        let result = equalized(&plate, &baseline::random(&plate, 400, seed), 6);
+        let ideal = (2.0 * plate.area() / (3.0_f64.sqrt() * 400.0)).sqrt();
+        let places: Vec<DVec3> = result.points.iter().map(|p| plate.locate(p)).collect();
+        let nearest = |i: usize| {
+            let others = (0..places.len()).filter(|&j| j != i);
+            others.map(|j| places[i].distance(places[j])).fold(f64::INFINITY, f64::min)
+        };
+        let least = (0..places.len()).map(nearest).fold(f64::INFINITY, f64::min);
+        assert!(least > 0.45 * ideal, "seed {seed}: {:.3}", least / ideal);
+    }
+}
+
+#[test]
+fn weights_are_met() {
+    // Density 3 : 1 on the halves of a square; and linear from 0 to 2 across it.
+    let square = mesh(&shapes::square(16));
+    let at = |p: &SurfacePoint| square.locate(p).x;
+    let points = baseline::random(&square, 400, 1);
+    let strips = vec![StripId(0); square.face_count()];
+    let run = |density: &Density| {
+        equalize(&square, &points, &strips, density, &EqualizeOptions::default(), &Silent)
+    };
+
+    let of_face = |face| if square.triangle(face).iter().all(|c| c.x <= 0.5) { 3.0 } else { 1.0 };
+    let weights: Vec<f64> = square.topology().face_ids().map(of_face).collect();
+    let halves = run(&Density::of_faces(&square, &weights).expect("weights of faces"));
+    assert!(worst_share(&halves.cells) < 1e-3, "{}", worst_share(&halves.cells));
+    let left = halves.points.iter().filter(|p| at(p) < 0.5).count();
+    assert!(left.abs_diff(300) <= 6, "{left} of 300");
+
+    let weights: Vec<f64> = square.positions().iter().map(|p| p.x).collect();
+    let ramp = run(&Density::of_vertices(&square, &weights).expect("weights of vertices"));
+    assert!(worst_share(&ramp.cells) < 1e-3, "{}", worst_share(&ramp.cells));
+    for x in [0.25, 0.5, 0.75] {
+        let below = ramp.points.iter().filter(|p| at(p) < x).count() as f64;
+        assert!((below - 400.0 * x * x).abs() <= 8.0, "{below} below {x}");
+    }
+}
+
+/// Root mean square error of the visible share over views that took no part.
+fn view_error(mesh: &SurfaceMesh, points: &[SurfacePoint]) -> f64 {
+    let options = measure::ViewOptions { views: 64, occlusions: 0, nodes: 40_000, seed: 9 };
+    let views = measure::Views::new(mesh, &options, &Silent);
+    views.measure(mesh, points, &Silent).view.l2
+}
+
+#[test]
+fn places_for_views_serve_views_that_took_no_part() {
+    let cup = mesh(&shapes::cup(1));
+    let strips = vec![StripId(0); cup.face_count()];
+    let points = baseline::random(&cup, 80, 1);
+    let run = |for_views| {
+        let options = EqualizeOptions { for_views, ..EqualizeOptions::default() };
+        equalize(&cup, &points, &strips, &Density::UNIFORM, &options, &Silent)
+    };
+    let (plain, placed) = (run(None), run(Some(ForViews { views: Some(512), ..ForViews::default() })));
+    let [before, after] = [&plain, &placed].map(|e| view_error(&cup, &e.points));
+    assert!(after < 0.8 * before, "{after} after {before}");
+    assert_eq!(placed.cells, plain.cells, "each point stays in its cell");
+}
+
+#[test]
+fn places_serve_the_cameras_that_were_asked_for() {
+    let sphere = mesh(&shapes::uv_sphere(24, 24));
+    let strips = vec![StripId(0); sphere.face_count()];
+    let points = baseline::random(&sphere, 60, 1);
+    let toward = DVec3::new(0.0, 1.0, 1.0);
+    let run = |for_views| {
+        let options = EqualizeOptions { for_views, ..EqualizeOptions::default() };
+        equalize(&sphere, &points, &strips, &Density::UNIFORM, &options, &Silent).points
+    };
+    // Half of a sphere is seen from far away, whatever the direction.
+    let error = |points: &[SurfacePoint]| {
+        let mut sum = 0.0;
+        for k in 0..40 {
+            let (sin, cos) = libm::sincos(f64::from(k));
+            let tilt = 0.25 * f64::from(k) / 40.0;
+            let (right, up) = toward.normalize().any_orthonormal_pair();
+            let from = toward.normalize() + (right * cos + up * sin) * tilt;
+            let seen = points.iter().filter(|p| sphere.face_normal(p.face).dot(from) > 0.0).count();
+            sum += (seen as f64 / points.len() as f64 - 0.5).powi(2);
+        }
+        (sum / 40.0).sqrt()
+    };
+    let cameras = Cameras::Cone { toward, angle: 0.3, distance: None };
+    let placed = run(Some(ForViews { cameras, stay: 0.05, views: Some(256), ..ForViews::default() }));
+    let (before, after) = (error(&run(None)), error(&placed));
+    assert!(after < 0.7 * before, "{after} after {before}");
 }

@@ -1,8 +1,9 @@
-//! The surface cut into tiles: triangles small against the distance of the points, each with a mass to share out.
+//! The surface cut into tiles: triangles no longer than the distance of the points, each with a mass to share out.
 
 use glam::DVec3;
 
 use super::normals::CornerNormals;
+use crate::density::Density;
 use crate::geometry::triangle;
 use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
@@ -11,6 +12,7 @@ use crate::parallel;
 /// A piece of a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tile {
+    /// Relative to the middle of the mesh, so that squares of places lose no digits.
     pub(super) corners: [DVec3; 3],
     /// The scaled normals at the corners.
     pub(super) normals: [DVec3; 3],
@@ -19,6 +21,7 @@ pub(super) struct Tile {
     pub(super) patch: u32,
     /// Its share of the mass (area times density) to be spread over the points.
     pub(super) mass: f64,
+    pub(super) area: f64,
 }
 
 impl Tile {
@@ -30,87 +33,124 @@ impl Tile {
     pub(super) fn normal(&self) -> DVec3 {
         (self.normals[0] + self.normals[1] + self.normals[2]) / 3.0
     }
-
-    /// The distance from the centre to the farthest corner.
-    pub(super) fn radius(&self) -> f64 {
-        let centre = self.centre();
-        libm::sqrt(self.corners.iter().fold(0.0_f64, |m, c| m.max(c.distance_squared(centre))))
-    }
 }
 
-/// Tiles in runs that lie close together.
+/// Tiles in clumps.
 pub(super) struct Tiles {
     pub(super) tiles: Vec<Tile>,
-    /// Where each run of tiles of one cell and patch ends; ascending.
-    pub(super) group_ends: Vec<u32>,
+    /// Where each clump ends; ascending.
+    pub(super) clump_ends: Vec<u32>,
 }
 
-impl Tiles {
-    /// The run of tiles of a group.
-    pub(super) fn group(&self, group: usize) -> std::ops::Range<usize> {
-        let start = if group == 0 { 0 } else { self.group_ends[group - 1] as usize };
-        start..self.group_ends[group] as usize
-    }
+/// What the surface is cut into tiles by.
+pub(super) struct Scale<'a> {
+    pub(super) density: &'a Density,
+    /// sqrt(area / number of points).
+    pub(super) d_m: f64,
+    /// The length of a unit of normal, in units of the distance of the points.
+    pub(super) bend: f64,
+    /// The middle of the mesh.
+    pub(super) middle: DVec3,
+}
 
-    /// Cuts the faces whose patch is given into tiles with no side longer than `longest`, and sorts them so that
-    /// tiles of one cube of side `cell` stand together. `density` is the mass per area of each face, `bend` the length
-    /// of a unit of normal.
-    pub(super) fn cut(
-        mesh: &SurfaceMesh,
-        patch_of_face: &[Option<u32>],
-        density: impl Fn(FaceId) -> f64 + Sync + Send,
-        bend: f64,
-        longest: f64,
-        cell: f64,
-    ) -> Self {
-        const CHUNK: usize = 1 << 12;
-        let (low, _) = mesh.bounds();
-        let normals = CornerNormals::new(mesh, patch_of_face);
-        let mut keyed: Vec<(u32, u64, Tile)> = parallel::map_chunks(mesh.face_count(), CHUNK, |range| {
-            let mut tiles = Vec::with_capacity(range.len());
-            for index in range {
-                let face = FaceId::new(index);
-                let Some(patch) = patch_of_face[index] else { continue };
-                let (places, scaled) = (mesh.triangle(face), normals.of(face).map(|n| n * bend));
-                let whole = std::array::from_fn(|c| (places[c], scaled[c]));
-                split(whole, longest, &mut |split: [(DVec3, DVec3); 3]| {
-                    let (corners, normals) = (split.map(|c| c.0), split.map(|c| c.1));
-                    let mass = triangle::area(corners[0], corners[1], corners[2]) * density(face);
-                    if mass > 0.0 {
-                        let tile = Tile { corners, normals, face, patch, mass };
-                        tiles.push((patch, cell_key(tile.centre() - low, cell), tile));
-                    }
-                });
+/// No side of a tile is longer than this many distances of the points there.
+const LONGEST: f64 = 0.7;
+
+/// Where few points are due, tiles and normals are scaled as if this share of the mean density were.
+const SPARSEST: f64 = 0.1;
+
+/// Clumps lie in cubes with sides of so many distances of the points, or down to half of that.
+const CLUMP: f64 = 0.25;
+
+/// Cuts the faces whose patch is given into tiles; faces without mass have none. Clumps of tiles that lie close
+/// together stand together, patch by patch.
+pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &Scale) -> Tiles {
+    const CHUNK: usize = 1 << 12;
+    let normals = CornerNormals::new(mesh, patch_of_face);
+    let (low, _) = mesh.bounds();
+    let pieces = parallel::map_chunks(mesh.face_count(), CHUNK, |range| {
+        let mut tiles = Vec::with_capacity(range.len());
+        for index in range {
+            let face = FaceId::new(index);
+            let Some(patch) = patch_of_face[index] else { continue };
+            let density = scale.density.corners(face);
+            let mean = (density[0] + density[1] + density[2]) / 3.0;
+            if mean <= 0.0 {
+                continue;
             }
-            tiles
-        })
-        .concat();
-        sort(&mut keyed);
-        let mut group_ends = Vec::new();
-        for i in 1..keyed.len() {
-            if (keyed[i].0, keyed[i].1) != (keyed[i - 1].0, keyed[i - 1].1) {
-                group_ends.push(i as u32);
-            }
+            let distance = scale.d_m / libm::sqrt(mean.max(SPARSEST));
+            let places = mesh.triangle(face).map(|p| p - scale.middle);
+            let normals = normals.of(face).map(|n| n * (scale.bend * distance));
+            let whole =
+                std::array::from_fn(|c| Corner { place: places[c], normal: normals[c], density: density[c] });
+            split(whole, LONGEST * distance, &mut |corners: [Corner; 3]| {
+                let places = corners.map(|c| c.place);
+                let area = triangle::area(places[0], places[1], places[2]);
+                let mass = area * (corners[0].density + corners[1].density + corners[2].density) / 3.0;
+                if mass > 0.0 {
+                    let normals = corners.map(|c| c.normal);
+                    tiles.push(Tile { corners: places, normals, face, patch, mass, area });
+                }
+            });
         }
-        group_ends.push(keyed.len() as u32);
-        Self { tiles: keyed.into_iter().map(|(_, _, tile)| tile).collect(), group_ends }
+        tiles
+    });
+    // (patch, size of the cube, cube, (piece, tile))
+    let mut keys: Vec<(u32, u32, u64, (u32, u32))> = parallel::map(pieces.len(), |p| {
+        let key = |(i, tile): (u32, &Tile)| {
+            let halvings = libm::log2((tile.mass / tile.area).max(1.0)) * 0.5;
+            let side = CLUMP * scale.d_m * libm::exp2(-libm::floor(halvings));
+            let cube = cell_key(tile.centre() + (scale.middle - low), side);
+            (tile.patch, halvings as u32, cube, (p as u32, i))
+        };
+        (0..).zip(&pieces[p]).map(key).collect::<Vec<_>>()
+    })
+    .concat();
+    sort(&mut keys);
+    let mut clump_ends = Vec::new();
+    for (i, pair) in keys.windows(2).enumerate() {
+        if (pair[0].0, pair[0].1, pair[0].2) != (pair[1].0, pair[1].1, pair[1].2) {
+            clump_ends.push(i as u32 + 1);
+        }
     }
+    clump_ends.push(keys.len() as u32);
+    let tiles = parallel::map(keys.len(), |i| {
+        let (piece, tile) = keys[i].3;
+        pieces[piece as usize][tile as usize]
+    });
+    Tiles { tiles, clump_ends }
 }
 
-/// Stable: within a cell tiles keep the order of the faces.
-fn sort(keyed: &mut [(u32, u64, Tile)]) {
+fn sort<K: Ord + Send>(keys: &mut [K]) {
     #[cfg(feature = "parallel")]
     {
         use rayon::prelude::*;
-        keyed.par_sort_by_key(|k| (k.0, k.1));
+        keys.par_sort_unstable();
     }
     #[cfg(not(feature = "parallel"))]
-    keyed.sort_by_key(|k| (k.0, k.1));
+    keys.sort_unstable();
 }
 
-/// Halves a triangle of places and normals across its longest side until no side is longer than `longest`.
-fn split(corners: [(DVec3, DVec3); 3], longest: f64, emit: &mut impl FnMut([(DVec3, DVec3); 3])) {
-    let [a, b, c] = corners.map(|c| c.0);
+#[derive(Clone, Copy)]
+struct Corner {
+    place: DVec3,
+    normal: DVec3,
+    density: f64,
+}
+
+impl Corner {
+    fn middle(self, other: Self) -> Self {
+        Self {
+            place: (self.place + other.place) * 0.5,
+            normal: (self.normal + other.normal) * 0.5,
+            density: (self.density + other.density) * 0.5,
+        }
+    }
+}
+
+/// Halves a triangle across its longest side until no side is longer than `longest`.
+fn split(corners: [Corner; 3], longest: f64, emit: &mut impl FnMut([Corner; 3])) {
+    let [a, b, c] = corners.map(|c| c.place);
     let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
     let long = (0..3).max_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
     if sides[long] <= longest * longest {
@@ -118,7 +158,7 @@ fn split(corners: [(DVec3, DVec3); 3], longest: f64, emit: &mut impl FnMut([(DVe
         return;
     }
     let (from, to, apex) = (corners[long], corners[(long + 1) % 3], corners[(long + 2) % 3]);
-    let middle = ((from.0 + to.0) * 0.5, (from.1 + to.1) * 0.5);
+    let middle = from.middle(to);
     split([from, middle, apex], longest, emit);
     split([middle, to, apex], longest, emit);
 }

@@ -33,7 +33,7 @@ impl Default for HalfSpaceOptions {
     }
 }
 
-/// The half-space `normal . x <= offset`.
+/// The half-space `normal . x < offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HalfSpace {

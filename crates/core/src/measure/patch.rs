@@ -32,6 +32,8 @@ const PURPOSE: u64 = 0x70_61_74_63;
 /// The norms of share of points - share of area over patches: from each seed triangle the triangle itself, then
 /// with its first ring of neighbours across edges, and so on to the whole component. "A random number of rings" is
 /// every number of rings, each a figure of its own. A patch holds the points of its faces, and its area is exact.
+/// A point on an edge belongs to the one face that it is given on, whichever that is: sets that lie on the edges or
+/// corners of a coarse mesh, such as some of its vertices, measure worse here than they are.
 ///
 /// O(seeds faces). `progress` counts seed triangles.
 pub fn patch(

@@ -26,7 +26,7 @@ pub(super) struct Profile {
     low: f64,
     /// From plane to plane.
     pub(super) width: f64,
-    /// The share of area below or in each plane, exact up to rounding.
+    /// The share of area below each plane, exact up to rounding; faces in the plane do not count, as points do not.
     pub(super) area: Vec<f64>,
 }
 
@@ -95,7 +95,7 @@ impl Profile {
         self.low + plane as f64 * self.width + self.origin.dot(self.direction)
     }
 
-    /// The share of the points below or in each plane.
+    /// The share of the points below each plane.
     pub(super) fn points_below(&self, points: &[DVec3]) -> Vec<f64> {
         let planes = self.area.len();
         let scale = 1.0 / self.width;
@@ -240,6 +240,21 @@ mod tests {
             1.0 - (c - t) * (c - t) / ((c - a) * (c - b))
         } else {
             1.0
+        }
+    }
+
+    #[test]
+    fn what_lies_in_a_plane_is_not_below_it() {
+        // The base z = 0, the shelf z = 1/2 and the top z = 1 of equal areas; planes at 0, 1/4, 1/2 and 3/4.
+        let corner = |z: f64| [DVec3::new(0.0, 0.0, z), DVec3::new(1.0, 0.0, z), DVec3::new(0.0, 1.0, z)];
+        let positions = [corner(0.0), corner(0.5), corner(1.0)].concat();
+        let mesh = crate::measure::testmesh::mesh(&positions, &[[0, 1, 2], [3, 4, 5], [6, 7, 8]]);
+        let profile = Scene::new(&mesh).profile(DVec3::Z, 4, 0.0).expect("the mesh has a height");
+        let points = profile.points_below(&[positions[0], positions[3], positions[6]]);
+        for (shares, name) in [(&profile.area, "area"), (&points, "points")] {
+            for (share, below) in shares.iter().zip([0.0, 1.0, 1.0, 2.0]) {
+                assert!((share - below / 3.0).abs() < 1e-15, "{name}: {shares:?}");
+            }
         }
     }
 

@@ -137,7 +137,8 @@ impl Tree {
     }
 
     /// The item with the smallest `squared(item)`, a squared distance from `p`, and that distance squared; of
-    /// several the one with the lowest number. Items with `skip(item)` do not count. `None` when none is left.
+    /// several the first that the tree comes to, always the same. Items with `skip(item)` do not count. `None` when
+    /// none is left.
     pub(super) fn nearest(
         &self,
         p: DVec3,
@@ -147,7 +148,8 @@ impl Tree {
         let mut best: Option<(usize, f64)> = None;
         let mut stack = vec![(0usize, 0.0f64)];
         while let Some((index, bound)) = stack.pop() {
-            if best.is_some_and(|(_, distance)| bound > distance) {
+            // Not nearer is not enough: among many points at one place all would be visited.
+            if best.is_some_and(|(_, distance)| bound >= distance) {
                 continue;
             }
             let node = &self.nodes[index];
@@ -171,7 +173,7 @@ impl Tree {
                             continue;
                         }
                         let distance = squared(item);
-                        if best.is_none_or(|(i, d)| distance < d || (distance == d && item < i)) {
+                        if best.is_none_or(|(_, d)| distance < d) {
                             best = Some((item, distance));
                         }
                     }
@@ -179,5 +181,48 @@ impl Tree {
             }
         }
         best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+    use crate::random::Random;
+
+    #[test]
+    fn the_nearest_is_what_a_full_search_finds() {
+        let mut random = Random::new(4, 2);
+        // Few different coordinates: many ties, many points at one place.
+        let mut place = || DVec3::new(random.unit(), random.unit(), random.unit()).map(|x| (4.0 * x).floor());
+        let points: Vec<DVec3> = (0..200).map(|_| place()).collect();
+        let tree = Tree::of_points(&points);
+        for _ in 0..50 {
+            let p = place() * 1.1;
+            for skipped in [None, Some(17), Some(180)] {
+                let squared = |i: usize| points[i].distance_squared(p);
+                let found = tree.nearest(p, squared, |i| Some(i) == skipped).expect("points are left");
+                let all = (0..200).filter(|&i| Some(i) != skipped).map(squared).fold(f64::INFINITY, f64::min);
+                assert_eq!((squared(found.0), found.1), (all, all));
+                assert_ne!(Some(found.0), skipped);
+            }
+        }
+        assert!(Tree::of_points(&[]).nearest(DVec3::ZERO, |_| 0.0, |_| false).is_none());
+    }
+
+    #[test]
+    fn points_at_one_place_are_not_all_visited() {
+        let points = vec![DVec3::splat(0.3); 10_000];
+        let tree = Tree::of_points(&points);
+        for p in [DVec3::ZERO, points[0]] {
+            let visited = Cell::new(0);
+            let squared = |i: usize| {
+                visited.set(visited.get() + 1);
+                points[i].distance_squared(p)
+            };
+            assert!(tree.nearest(p, squared, |i| i == 5).is_some());
+            assert!(visited.get() <= 2 * LEAF, "{}", visited.get());
+        }
     }
 }

@@ -3,9 +3,19 @@
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, VecDeque};
 
-use super::{Attachment, GrowthOrder, Segment, SegmentOptions};
+use super::{Attachment, Segment, SegmentOptions};
 use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::SurfaceMesh;
+
+/// Which neighbour of the growing segment is tried next.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Next {
+    /// The one that has waited longest: along the boundary.
+    Oldest,
+    Flattest,
+    /// The one behind the longest edge.
+    Longest,
+}
 
 /// The state of one face.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -34,7 +44,7 @@ impl Frontier {
 
 pub(super) struct Growth<'a> {
     mesh: &'a SurfaceMesh,
-    order: GrowthOrder,
+    next: Next,
     /// Neighbours whose normals' squared distance is at most this are almost flat.
     flat: f64,
     state: Vec<FaceState>,
@@ -45,17 +55,17 @@ pub(super) struct Growth<'a> {
 }
 
 impl<'a> Growth<'a> {
-    pub(super) fn new(mesh: &'a SurfaceMesh, options: &SegmentOptions) -> Self {
+    pub(super) fn new(mesh: &'a SurfaceMesh, options: &SegmentOptions, next: Next) -> Self {
         let half = libm::sin(0.5 * options.flatness_angle.clamp(0.0, std::f64::consts::PI));
         Self {
             mesh,
-            order: options.order,
+            next,
             flat: 4.0 * half * half,
             state: vec![FaceState::Free; mesh.face_count()],
             attachments: Vec::new(),
-            frontier: match options.order {
-                GrowthOrder::BoundaryWalk => Frontier::Walk(VecDeque::new()),
-                GrowthOrder::FlattestFirst | GrowthOrder::LongestFirst => Frontier::Keyed(BinaryHeap::new()),
+            frontier: match next {
+                Next::Oldest => Frontier::Walk(VecDeque::new()),
+                Next::Flattest | Next::Longest => Frontier::Keyed(BinaryHeap::new()),
             },
             bent: Vec::new(),
         }
@@ -115,10 +125,10 @@ impl<'a> Growth<'a> {
     }
 
     fn push(&mut self, halfedge: HalfedgeId, twin: HalfedgeId) {
-        let key = match self.order {
-            GrowthOrder::BoundaryWalk => 0.0,
-            GrowthOrder::FlattestFirst => self.bend(halfedge.face(), twin.face()),
-            GrowthOrder::LongestFirst => self.mesh.edge_length(halfedge).recip(),
+        let key = match self.next {
+            Next::Oldest => 0.0,
+            Next::Flattest => self.bend(halfedge.face(), twin.face()),
+            Next::Longest => self.mesh.edge_length(halfedge).recip(),
         };
         match &mut self.frontier {
             Frontier::Walk(queue) => queue.push_back(halfedge),

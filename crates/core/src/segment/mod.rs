@@ -1,13 +1,16 @@
 //! Segmentation (paper, 4.1): which triangles form a segment, joined across which edges.
 
+mod choice;
+mod fitting;
 mod growth;
 mod merge;
+mod planar;
 mod seeds;
 mod skeleton;
 
 use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
-use growth::Growth;
+use growth::{Growth, Next};
 use merge::merge_small;
 use seeds::Seeds;
 use skeleton::skeleton;
@@ -17,10 +20,13 @@ use skeleton::skeleton;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum GrowthOrder {
+    /// The one that opens the least border in the plane first; several ways to break ties, and the other orders, are
+    /// tried, and each component takes the one that leaves the least border open.
+    #[default]
+    LeastOpen,
     /// The paper's: along the boundary, first in, first out.
     BoundaryWalk,
     /// The smallest angle between the normals first.
-    #[default]
     FlattestFirst,
     /// The longest edge first.
     LongestFirst,
@@ -36,7 +42,7 @@ pub struct SegmentOptions {
     /// Segments with fewer triangles than this share of all go on growing whatever the angle (paper, 4.1 step 4), and
     /// with [`GrowthOrder::FlattestFirst`] join a neighbour when they cannot grow. Default: 0.002.
     pub smallest_share: f64,
-    /// In which order a segment grows. Default: flattest first, which measures best.
+    /// In which order a segment grows. Default: what leaves the least border open.
     pub order: GrowthOrder,
 }
 
@@ -82,20 +88,37 @@ impl Segmentation {
     }
 }
 
-/// Cuts the surface into segments (paper, 4.1 steps 1 to 5). Every face ends up in exactly one segment.
+/// Cuts the surface into segments (paper, 4.1 steps 1 to 5). Every face ends up in exactly one segment. What is best is
+/// judged as for 1,000 points: see [`segment_for`].
 ///
 /// Cost: O(F log F) for F faces.
 pub fn segment(mesh: &SurfaceMesh, options: &SegmentOptions) -> Segmentation {
+    segment_for(mesh, options, 0.1 * libm::sqrt(mesh.area() / 1000.0))
+}
+
+/// As [`segment`], for a correction that closes cuts up to `tolerance` wide (in units of the mesh): only
+/// [`GrowthOrder::LeastOpen`] looks at it.
+pub fn segment_for(mesh: &SurfaceMesh, options: &SegmentOptions, tolerance: f64) -> Segmentation {
+    match options.order {
+        GrowthOrder::LeastOpen => choice::least_open(mesh, options, tolerance),
+        GrowthOrder::BoundaryWalk => grow(mesh, options, Next::Oldest),
+        GrowthOrder::FlattestFirst => grow(mesh, options, Next::Flattest),
+        GrowthOrder::LongestFirst => grow(mesh, options, Next::Longest),
+    }
+}
+
+/// Grows segments by the angle between neighbours (paper, 4.1 steps 1 to 5).
+fn grow(mesh: &SurfaceMesh, options: &SegmentOptions, next: Next) -> Segmentation {
     let mut seeds = Seeds::new(mesh);
-    let mut growth = Growth::new(mesh, options);
+    let mut growth = Growth::new(mesh, options, next);
     let smallest = (options.smallest_share * mesh.face_count() as f64).ceil() as usize;
     let mut segments = Vec::new();
     while let Some(seed) = seeds.next(&growth) {
         growth.start_segment();
-        match options.order {
-            GrowthOrder::BoundaryWalk | GrowthOrder::LongestFirst => skeleton(&mut growth, seed),
+        match next {
+            Next::Oldest | Next::Longest => skeleton(&mut growth, seed),
             // A skeleton along long edges crosses creases, which is what flattest first is there to avoid.
-            GrowthOrder::FlattestFirst => growth.plant(seed.face()),
+            Next::Flattest => growth.plant(seed.face()),
         }
         growth.grow_flat();
         growth.take_leftovers();
@@ -107,8 +130,11 @@ pub fn segment(mesh: &SurfaceMesh, options: &SegmentOptions) -> Segmentation {
         seeds.save_border(mesh, &growth, &segment);
         segments.push(segment);
     }
-    if options.order == GrowthOrder::FlattestFirst {
+    if next == Next::Flattest {
         segments = merge_small(mesh, segments, smallest);
     }
     Segmentation { segments }
 }
+
+#[cfg(test)]
+mod tests;

@@ -39,21 +39,7 @@ pub(super) struct Seeds {
 
 impl Seeds {
     pub(super) fn new(mesh: &SurfaceMesh) -> Self {
-        let components = mesh.topology().components();
-        let mut longest: Vec<Option<LongEdge>> = vec![None; components.count];
-        for face in mesh.topology().face_ids() {
-            let best = &mut longest[components.of_face[face.index()] as usize];
-            for corner in 0..3 {
-                let halfedge = HalfedgeId::of(face, corner);
-                let edge = LongEdge { length: mesh.edge_length(halfedge), halfedge };
-                if best.is_none_or(|b| edge > b) {
-                    *best = Some(edge);
-                }
-            }
-        }
-        let mut components: Vec<LongEdge> = longest.into_iter().flatten().collect();
-        components.sort_unstable();
-        Self { saved: BinaryHeap::new(), components }
+        Self { saved: BinaryHeap::new(), components: longest_edges(mesh) }
     }
 
     /// A side of a free triangle: the one to start from, as that triangle sees it.
@@ -86,4 +72,28 @@ impl Seeds {
             }
         }
     }
+}
+
+/// The longest edge of each component, the longest of all last.
+fn longest_edges(mesh: &SurfaceMesh) -> Vec<LongEdge> {
+    let components = mesh.topology().components();
+    let mut longest: Vec<Option<LongEdge>> = vec![None; components.count];
+    for face in mesh.topology().face_ids() {
+        let best = &mut longest[components.of_face[face.index()] as usize];
+        for corner in 0..3 {
+            let halfedge = HalfedgeId::of(face, corner);
+            let edge = LongEdge { length: mesh.edge_length(halfedge), halfedge };
+            if best.is_none_or(|b| edge > b) {
+                *best = Some(edge);
+            }
+        }
+    }
+    let mut components: Vec<LongEdge> = longest.into_iter().flatten().collect();
+    components.sort_unstable();
+    components
+}
+
+/// The longest edge of each component, the longest of all first.
+pub(super) fn component_seeds(mesh: &SurfaceMesh) -> Vec<HalfedgeId> {
+    longest_edges(mesh).into_iter().rev().map(|edge| edge.halfedge).collect()
 }

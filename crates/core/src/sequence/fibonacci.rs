@@ -1,5 +1,7 @@
 //! The Fibonacci lattice, extended from Fibonacci numbers to any number of points.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use crate::sequence::fraction;
@@ -12,6 +14,39 @@ pub(super) fn point(index: u64, count: u64) -> DVec2 {
     let count = count.max(1);
     let index = index % count;
     DVec2::new(fraction::of(u128::from(index), u128::from(count)), fraction::of_multiple(index, STEP, 0))
+}
+
+/// The first index from `from` on whose second coordinate lies in the range, or just beside it; `None` if it is
+/// beyond 2^53.
+pub(super) fn next_visit(from: u64, y: &Range<f64>) -> Option<u64> {
+    // 96 bits after the point: exact enough for 2^53 steps, and the products below fit in 128.
+    const ONE: u128 = 1 << 96;
+    let bits = |x: f64| ((x * 18_446_744_073_709_551_616.0) as u128) << 32;
+    let here = u128::from(from).wrapping_mul(STEP) >> 32;
+    let low = (bits(y.start) + ONE - here) % ONE;
+    let high = low + (bits(y.end) - bits(y.start)).min(ONE - 1);
+    if low == 0 || high >= ONE {
+        return Some(from);
+    }
+    let steps = first_multiple(STEP >> 32, ONE, low, high)?;
+    from.checked_add(u64::try_from(steps).ok()?).filter(|i| *i <= 1 << 53)
+}
+
+/// The smallest k with `low` <= k `step` modulo `modulus` <= `high`: Euclid's algorithm on intervals.
+fn first_multiple(step: u128, modulus: u128, low: u128, high: u128) -> Option<u128> {
+    if low == 0 {
+        return Some(0);
+    }
+    if step == 0 {
+        return None;
+    }
+    let k = low.div_ceil(step);
+    if k * step <= high {
+        return Some(k);
+    }
+    // k step - t modulus is in [low, high] when t modulus, modulo step, is in this interval.
+    let turns = first_multiple(modulus % step, step, k * step - high, k * step - low)?;
+    turns.checked_mul(modulus)?.checked_add(low).map(|reached| reached.div_ceil(step))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! 1), and has the same bits on every platform. An index is any `u64`.
 
 mod fibonacci;
+mod finder;
 mod fraction;
 mod halton;
 mod hammersley;
@@ -15,6 +16,7 @@ mod sobol;
 
 use glam::DVec2;
 
+pub(crate) use finder::Finder;
 pub use radical_inverse::radical_inverse;
 pub use shift::{shift, shift_of_seed};
 
@@ -47,6 +49,9 @@ pub enum Sequence {
     Fibonacci,
 }
 
+/// The largest base that [`Sequence::validate`] allows: fewer points than the base lie on one line.
+pub const LARGEST_BASE: u32 = 1024;
+
 impl Default for Sequence {
     fn default() -> Self {
         Self::Hammersley { base: 2 }
@@ -60,6 +65,12 @@ pub enum SequenceError {
     /// A base that has no digits.
     #[error("base {base} of the sequence is too small: a base is at least 2")]
     SmallBase {
+        /// The base.
+        base: u32,
+    },
+    /// A base so large that a set of a useful number of points would lie on a few lines.
+    #[error("base {base} of the sequence is too large: at most {LARGEST_BASE} can be used")]
+    LargeBase {
         /// The base.
         base: u32,
     },
@@ -98,13 +109,13 @@ impl Sequence {
     /// Checks the bases.
     ///
     /// # Errors
-    /// [`SequenceError`] when a base is below 2 or the bases have a common factor.
+    /// [`SequenceError`] when a base is below 2 or above [`LARGEST_BASE`], or the bases have a common factor.
     pub fn validate(&self) -> Result<(), SequenceError> {
         match *self {
-            Self::Hammersley { base } => at_least_two(base),
+            Self::Hammersley { base } => check_base(base),
             Self::Halton { bases } => {
-                at_least_two(bases[0])?;
-                at_least_two(bases[1])?;
+                check_base(bases[0])?;
+                check_base(bases[1])?;
                 match greatest_common_divisor(bases[0], bases[1]) {
                     1 => Ok(()),
                     factor => Err(SequenceError::SharedFactor { bases, factor }),
@@ -115,8 +126,26 @@ impl Sequence {
     }
 }
 
-fn at_least_two(base: u32) -> Result<(), SequenceError> {
-    if base < 2 { Err(SequenceError::SmallBase { base }) } else { Ok(()) }
+/// A third coordinate in [0, 1) for the point of an index: the radical inverse in a prime base that the other two do not
+/// use. Where only the points below a height are kept, that share of them stays, evenly spread.
+pub(crate) fn third_coordinate(sequence: &Sequence, index: u64) -> f64 {
+    let uses = |prime: u32| match *sequence {
+        Sequence::Hammersley { base } => base % prime == 0,
+        Sequence::Halton { bases } => bases.iter().any(|b| b % prime == 0),
+        Sequence::Sobol { .. } => prime == 2,
+        Sequence::R2 | Sequence::Fibonacci => false,
+    };
+    // Two bases without common factor, up to 1,024 each, have at most seven prime factors.
+    let prime = [2, 3, 5, 7, 11, 13, 17].into_iter().find(|p| !uses(*p)).unwrap_or(19);
+    radical_inverse(index, prime)
+}
+
+fn check_base(base: u32) -> Result<(), SequenceError> {
+    match base {
+        0 | 1 => Err(SequenceError::SmallBase { base }),
+        2..=LARGEST_BASE => Ok(()),
+        _ => Err(SequenceError::LargeBase { base }),
+    }
 }
 
 fn greatest_common_divisor(mut a: u32, mut b: u32) -> u32 {
@@ -213,6 +242,10 @@ mod tests {
             assert_eq!(Sequence::Halton { bases: [base, 3] }.validate(), refused);
             assert_eq!(Sequence::Halton { bases: [3, base] }.validate(), refused);
         }
+        assert_eq!(Sequence::Halton { bases: [1024, 3] }.validate(), Ok(()));
+        let refused = Err(SequenceError::LargeBase { base: 1025 });
+        assert_eq!(Sequence::Halton { bases: [2, 1025] }.validate(), refused);
+        assert_eq!(Sequence::Hammersley { base: 1025 }.validate(), refused);
         assert_eq!(
             Sequence::Halton { bases: [6, 15] }.validate(),
             Err(SequenceError::SharedFactor { bases: [6, 15], factor: 3 })
@@ -221,6 +254,17 @@ mod tests {
             SequenceError::SharedFactor { bases: [6, 15], factor: 3 }.to_string(),
             "bases 6 and 15 of the sequence share the factor 3: they must have none in common"
         );
+    }
+
+    #[test]
+    fn the_third_coordinate_uses_another_base() {
+        let third = |sequence| third_coordinate(&sequence, 1);
+        assert_eq!(third(Sequence::Hammersley { base: 2 }), 1.0 / 3.0);
+        assert_eq!(third(Sequence::Hammersley { base: 3 }), 0.5);
+        assert_eq!(third(Sequence::Halton { bases: [2, 3] }), 0.2);
+        assert_eq!(third(Sequence::Halton { bases: [770, 39] }), 1.0 / 17.0);
+        assert_eq!(third(Sequence::Sobol { seed: 1 }), 1.0 / 3.0);
+        assert_eq!(third(Sequence::R2), 0.5);
     }
 
     proptest! {

@@ -15,6 +15,18 @@ pub(super) fn nested(bits: u64, seed: u64, dimension: u64) -> u64 {
     (bits ^ flips) & !0x7ff
 }
 
+/// What [`nested`] makes into these first `levels` (at most 53) bits; the others are 0.
+pub(super) fn undo(scrambled: u64, levels: u32, seed: u64, dimension: u64) -> u64 {
+    let key = mix(seed ^ mix(dimension.wrapping_add(1)));
+    let mut bits = 0u64;
+    for level in 0..levels {
+        let node = (1 << level) | (bits >> (63 - level) >> 1);
+        let flip = mix(key ^ node.wrapping_mul(0x9e37_79b9_7f4a_7c15)) >> 63;
+        bits |= ((scrambled >> (63 - level) & 1) ^ flip) << (63 - level);
+    }
+    bits
+}
+
 /// The finalizer of SplitMix64 (Steele, Lea and Flood, DOI 10.1145/2714064.2660195): every bit of the result depends
 /// on every bit of the argument.
 #[inline]

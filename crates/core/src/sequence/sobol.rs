@@ -1,5 +1,7 @@
 //! The first two dimensions of Sobol's sequence, scrambled.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use crate::sequence::{fraction, scramble};
@@ -33,6 +35,87 @@ fn second(index: u64) -> u64 {
 pub(super) fn point(seed: u64, index: u64) -> DVec2 {
     let scrambled = |bits, dimension| fraction::of_bits(scramble::nested(bits, seed, dimension));
     DVec2::new(scrambled(first(index), 0), scrambled(second(index), 1))
+}
+
+/// Finds the points of a box: an aligned block of 2^(along + across) indices has one point in each box of width
+/// 2^-along and height 2^-across, whose index solves a linear system over two elements.
+#[derive(Clone, Debug)]
+pub(super) struct Solver {
+    seed: u64,
+    along: u32,
+    across: u32,
+    /// Row r of the inverse of the matrix that takes the middle bits of an index to the first bits of its second
+    /// coordinate.
+    inverse: Vec<u64>,
+}
+
+impl Solver {
+    pub(super) fn new(seed: u64, count: u64) -> Self {
+        let bits = count.max(1).ilog2().min(52);
+        let across = bits / 2;
+        let along = bits - across;
+        // Column c of the matrix: what the index bit along + c does to the first `across` bits. Rows are solved with
+        // the unit matrix beside them.
+        let image: Vec<u64> = (0..across).map(|c| first_bits(second(1 << (along + c)), across)).collect();
+        let mut rows: Vec<(u64, u64)> = (0..across)
+            .map(|r| {
+                let row =
+                    (0..across).fold(0, |row, c| row | (image[c as usize] >> (across - 1 - r) & 1) << c);
+                (row, 1 << r)
+            })
+            .collect();
+        for c in 0..across as usize {
+            // A net has a point in every box, so the matrix can be inverted and there is a pivot.
+            let pivot = (c..rows.len()).find(|&r| rows[r].0 >> c & 1 == 1).unwrap_or(c);
+            rows.swap(c, pivot);
+            for r in 0..rows.len() {
+                if r != c && rows[r].0 >> c & 1 == 1 {
+                    rows[r].0 ^= rows[c].0;
+                    rows[r].1 ^= rows[c].1;
+                }
+            }
+        }
+        Self { seed, along, across, inverse: rows.into_iter().map(|(_, inverse)| inverse).collect() }
+    }
+
+    /// Appends the indices below `count` of the points in all boxes that meet the ranges.
+    pub(super) fn candidates(&self, x: Range<f64>, y: Range<f64>, count: u64, found: &mut Vec<u64>) {
+        let columns = self.unscrambled(&x, self.along, 0);
+        let rows = self.unscrambled(&y, self.across, 1);
+        let block = self.along + self.across;
+        for &column in &columns {
+            let low = column.reverse_bits();
+            for start in (0..count).step_by(1 << block) {
+                let known = start | low;
+                let reached = first_bits(second(known), self.across);
+                for &row in &rows {
+                    let missing = first_bits(row, self.across) ^ reached;
+                    let missing = missing.reverse_bits() >> 1 >> (63 - self.across);
+                    let middle = (0..).zip(&self.inverse).fold(0, |bits, (c, inverse)| {
+                        bits | u64::from((inverse & missing).count_ones() & 1) << c
+                    });
+                    let index = known | middle << self.along;
+                    if index < count {
+                        found.push(index);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The first `bits` bits, before scrambling, of the intervals that meet the range.
+    fn unscrambled(&self, range: &Range<f64>, bits: u32, dimension: u64) -> Vec<u64> {
+        let scale = (1u64 << bits) as f64;
+        let first = (range.start * scale).floor().max(0.0) as u64;
+        let end = ((range.end * scale).floor() as u64 + 1).min(1 << bits);
+        let aligned = |k: u64| if bits == 0 { 0 } else { k << (64 - bits) };
+        (first..end).map(|k| scramble::undo(aligned(k), bits, self.seed, dimension)).collect()
+    }
+}
+
+/// The first bits after the point, as a whole number.
+fn first_bits(fraction: u64, bits: u32) -> u64 {
+    fraction >> 1 >> (63 - bits)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The controls: mesh, points, segmentation, method, what is drawn, files to take away.
 
-use eframe::egui::{self, ComboBox, DragValue, Slider, ThemePreference};
+use eframe::egui::{self, ComboBox, DragValue, RichText, Slider, ThemePreference};
 use ldwrap::pipeline::Request;
 use ldwrap::segment::GrowthOrder;
 use ldwrap::sequence::Sequence;
@@ -139,6 +139,9 @@ pub(super) fn show(ui: &mut egui::Ui, model: &mut Model) {
         ui.label("Up");
         ui.radio_value(&mut model.orbit.up, Up::Y, "y");
         ui.radio_value(&mut model.orbit.up, Up::Z, "z");
+        if let Some(mesh) = model.mesh.as_ref().filter(|m| m.up.0 == model.orbit.up) {
+            ui.label(RichText::new(mesh.up.1.words()).weak());
+        }
     });
     let mut rings = model.rings;
     if slider(ui, "Sample figure, rings", Slider::new(&mut rings, 0..=60)) {
@@ -168,6 +171,7 @@ fn settings(ui: &mut egui::Ui, settings: &mut Settings, slot: Slot) {
         slider(ui, "Flatness angle", Slider::new(&mut settings.flatness_angle, 0.0..=180.0).suffix("°"));
         ui.add_enabled_ui(wraps, |ui| {
             let orders = [
+                (GrowthOrder::LeastOpen, "least open border"),
                 (GrowthOrder::FlattestFirst, "flattest first"),
                 (GrowthOrder::BoundaryWalk, "along the boundary"),
                 (GrowthOrder::LongestFirst, "longest first"),

@@ -3,14 +3,15 @@
 use eframe::egui::{self, Key};
 use glam::Vec2;
 
-use crate::camera::Up;
+use crate::camera::{PlaneView, Up};
 use crate::model::{Colouring, Model};
 use crate::scene::Layout;
 
 /// What a key does, for the list that a person can open.
-pub(super) const KEYS: [(&str, &str); 12] = [
+pub(super) const KEYS: [(&str, &str); 13] = [
     ("Arrows", "turn the surface; with Shift, move it"),
     ("+ and -", "come nearer, go away"),
+    ("Tab", "to the next view or control; in the plane the keys above move the plane"),
     ("Home", "show all"),
     ("N and P", "pin the next, the previous point"),
     ("[ and ]", "smaller, larger sample figure"),
@@ -36,14 +37,12 @@ pub(super) fn handle(ctx: &egui::Context, model: &mut Model) {
     let free =
         ctx.memory(egui::Memory::focused).is_none_or(|id| CANVASES.map(egui::Id::unique).contains(&id));
     let (arrows, shift) = ctx.input(|i| (if free { arrows(i) } else { Vec2::ZERO }, i.modifiers.shift));
-    if arrows != Vec2::ZERO {
+    let in_plane = ctx.memory(egui::Memory::focused) == Some(egui::Id::unique(CANVASES[2]));
+    if arrows != Vec2::ZERO && !in_plane {
         if shift { model.orbit.pan(0.05 * arrows) } else { model.orbit.turn(0.05 * arrows) }
     }
-    if ctx.input(|i| i.key_pressed(Key::Plus) || i.key_pressed(Key::Equals)) {
-        model.orbit.zoom(1.15);
-    }
-    if pressed(Key::Minus) {
-        model.orbit.zoom(1.0 / 1.15);
+    if !in_plane {
+        model.orbit.zoom(nearer(ctx));
     }
     if pressed(Key::Home) {
         model.reset_views();
@@ -107,6 +106,19 @@ pub(super) fn handle(ctx: &egui::Context, model: &mut Model) {
     }
 }
 
+/// The factor by which the keys come nearer.
+fn nearer(ctx: &egui::Context) -> f32 {
+    const STEP: f32 = 1.15;
+    let presses = |key| ctx.input(|i| i.num_presses(key)) as i32;
+    STEP.powi(presses(Key::Plus) + presses(Key::Equals) - presses(Key::Minus))
+}
+
+/// Moves the plane by the keyboard while it has the focus.
+pub(super) fn steer_plane(ctx: &egui::Context, view: &mut PlaneView, aspect: f32) {
+    view.pan(-0.05 * ctx.input(arrows));
+    view.zoom(aspect, Vec2::ZERO, nearer(ctx));
+}
+
 fn arrows(input: &egui::InputState) -> Vec2 {
     let axis = |less, more| input.num_presses(more) as f32 - input.num_presses(less) as f32;
     Vec2::new(axis(Key::ArrowLeft, Key::ArrowRight), axis(Key::ArrowUp, Key::ArrowDown))
@@ -114,7 +126,15 @@ fn arrows(input: &egui::InputState) -> Vec2 {
 
 /// Lets a view that has the focus take the arrows.
 pub(super) fn take_arrows(ui: &egui::Ui, view: &egui::Response) {
+    if view.gained_focus() || view.clicked() {
+        // Only from its second frame on can a view keep the arrows; that frame must not wait for an arrow.
+        ui.ctx().request_repaint();
+    }
     if view.has_focus() {
+        // An arrow that came before the filter held would still move the focus.
+        if ui.input(arrows) != Vec2::ZERO {
+            ui.memory_mut(|m| m.move_focus(egui::FocusDirection::None));
+        }
         let filter =
             egui::EventFilter { horizontal_arrows: true, vertical_arrows: true, ..Default::default() };
         ui.memory_mut(|m| m.set_focus_lock_filter(view.id, filter));

@@ -30,12 +30,13 @@ use watch::Frames;
 /// Below this width everything stands in one column.
 const NARROW: f32 = 760.0;
 
-/// The app: the model, its two engines, and what is drawn.
+/// The app: the model, its engines, and what is drawn.
 pub struct App {
     /// The state.
     pub model: Model,
     maker: EngineLink,
     looker: EngineLink,
+    judge: EngineLink,
     inbox: Inbox,
     gpu: Arc<Mutex<Gpu>>,
     pictures: Pictures,
@@ -78,17 +79,21 @@ impl App {
         });
         #[cfg(target_arch = "wasm32")]
         mirror::install(&context.egui_ctx);
-        Ok(Self {
+        let mut app = Self {
             model,
-            maker: EngineLink::start(wake.clone())?,
-            looker: EngineLink::start(wake)?,
+            maker: EngineLink::new(wake.clone()),
+            looker: EngineLink::new(wake.clone()),
+            judge: EngineLink::new(wake),
             inbox: Inbox::new(context.egui_ctx.clone()),
             gpu,
             pictures: Pictures::default(),
             frames: Frames::default(),
             taken: Arc::default(),
             saved: Vec::new(),
-        })
+        };
+        // The maker loads and wraps while the first frame is drawn.
+        app.post();
+        Ok(app)
     }
 
     /// The state as JSON, for tests of the page.
@@ -104,6 +109,9 @@ impl App {
     fn exchange(&mut self, ctx: &egui::Context) {
         for answer in self.maker.take() {
             self.model.receive(answer);
+        }
+        for answer in self.judge.take() {
+            self.model.receive_verdict(answer);
         }
         for answer in self.looker.take() {
             self.model.receive_look(answer);
@@ -131,18 +139,30 @@ impl App {
         if !ctx.input(|i| i.pointer.any_down()) {
             self.model.settle();
         }
-        if self.model.take_cancel() {
-            self.maker.cancel();
-        }
-        for (desk, job) in self.model.take_jobs() {
+        for desk in self.model.take_cancels() {
             match desk {
-                Desk::Maker => self.maker.post(&job),
-                Desk::Looker => self.looker.post(&job),
-            }
-            if matches!(job, Job::Load(_)) {
-                ctx.request_repaint();
+                Desk::Maker => self.maker.cancel(),
+                Desk::Judge => self.judge.cancel(),
+                Desk::Looker => self.looker.cancel(),
             }
         }
+        if self.post() {
+            ctx.request_repaint();
+        }
+    }
+
+    /// Posts the jobs that wait, each to its engine; whether a mesh is among them.
+    fn post(&mut self) -> bool {
+        let mut loads = false;
+        for (desk, job) in self.model.take_jobs() {
+            loads |= matches!(job, Job::Load(_));
+            match desk {
+                Desk::Maker => self.maker.post(job),
+                Desk::Judge => self.judge.post(job),
+                Desk::Looker => self.looker.post(job),
+            }
+        }
+        loads
     }
 
     /// Asks for a picture of the page; it arrives a frame or two later.
@@ -173,7 +193,7 @@ impl App {
                     }
                     let (stage, share) = app.model.stage.clone().unwrap_or_default();
                     ui.label(share.map_or(stage.clone(), |s| format!("{stage} {:.0}%", 100.0 * s)));
-                } else if !narrow {
+                } else {
                     ui.label(RichText::new("Your mesh stays on this machine.").weak());
                 }
             };
@@ -218,7 +238,9 @@ impl App {
             egui::ScrollArea::vertical().show(ui, |ui| {
                 let width = ui.available_width();
                 for surface in [true, false] {
-                    let height = if surface { 0.9 * width } else { 0.7 * width };
+                    // A view never fills the screen: there must be room to scroll past it.
+                    let most = 0.72 * ui.ctx().content_rect().height();
+                    let height = (if surface { 0.9 * width } else { 0.7 * width }).min(most);
                     let (rect, _) = ui.allocate_exact_size(egui::vec2(width, height), egui::Sense::empty());
                     if surface {
                         self.surface_views(ui, rect, frame);

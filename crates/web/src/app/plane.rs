@@ -5,11 +5,11 @@ use std::sync::{Arc, Mutex};
 use eframe::egui::{self, Align2, Color32, FontId, Rect, Sense, Stroke, StrokeKind};
 use eframe::egui_glow::CallbackFn;
 use egui::accesskit::Role;
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 
 use super::draw::{Covers, Gpu, Picture, Shot};
 use super::keys;
-use super::surface::{in_clip, on_screen};
+use super::surface::{in_clip, on_screen, on_view};
 use super::theme::Palette;
 use crate::camera::PlaneView;
 use crate::model::Model;
@@ -61,8 +61,9 @@ pub(super) fn show(
     }
     let scale = ui.ctx().pixels_per_point();
     let band = model.shown.band.then_some([0.85, 0.1, 0.1, 0.38]);
+    let (seen, to_seen) = on_view(ui, rect).unwrap_or((rect, Mat4::IDENTITY));
     let shot = Shot {
-        matrix,
+        matrix: to_seen * matrix,
         eye: Vec3::ZERO,
         light: None,
         lift: 0.0,
@@ -82,7 +83,7 @@ pub(super) fn show(
             gpu.draw(painter.gl(), PLACE, &picture, &shot);
         }
     });
-    ui.painter().add(egui::PaintCallback { rect, callback: Arc::new(callback) });
+    ui.painter().add(egui::PaintCallback { rect: seen, callback: Arc::new(callback) });
 
     for (picked, colour) in [(model.pinned, Color32::from_rgb(255, 200, 0)), (model.hover, Color32::WHITE)] {
         if let Some(place) = picked.and_then(|p| place(&run, model.layout, p)) {
@@ -100,7 +101,7 @@ pub(super) fn show(
 
 /// How wide points are, in egui's units, where `unit` of them show one unit of the mesh: a part of their distance.
 pub(super) fn point_size(run: &RunScene, unit: f32) -> f32 {
-    (0.5 * run.d_m as f32 * unit).clamp(2.6, 9.0)
+    (0.5 * run.d_m as f32 * unit).clamp(1.7, 9.0)
 }
 
 fn place(run: &RunScene, layout: Layout, pick: Pick) -> Option<Vec2> {
@@ -130,6 +131,9 @@ fn steer(
     } else if let Some(at) = response.hover_pos() {
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         view.zoom(aspect, in_clip(rect, at), (scroll * 0.005).exp() * pinch);
+    }
+    if response.has_focus() {
+        keys::steer_plane(ui.ctx(), view, aspect);
     }
     if *view != before {
         model.plane = Some(*view);

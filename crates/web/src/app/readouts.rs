@@ -126,15 +126,18 @@ fn measures(ui: &mut egui::Ui, model: &Model) {
     ui.label(RichText::new("error, where 1 is that of random points").weak());
     for slot in model.slots() {
         for (measure, verdict) in &model.verdicts[slot.index()] {
-            let Some(error) = verdict.error else { continue };
             let name = if model.comparing {
                 format!("{} {}", slot.name(), measure.name())
             } else {
                 measure.name().into()
             };
-            bar(ui, &name, error, theme::slot_colour(ui, slot.index())).on_hover_text(measure.meaning());
+            if let Some(error) = verdict.error {
+                bar(ui, &name, error, theme::slot_colour(ui, slot.index())).on_hover_text(measure.meaning());
+            } else if !verdict.note.is_empty() {
+                ui.label(name).on_hover_text(measure.meaning());
+            }
             if !verdict.note.is_empty() {
-                ui.label(RichText::new(&verdict.note).small().weak());
+                ui.label(RichText::new(&verdict.note).size(11.5).weak());
             }
         }
     }

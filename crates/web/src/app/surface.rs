@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, StrokeKind};
 use eframe::egui_glow::CallbackFn;
 use egui::accesskit::Role;
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 
 use super::draw::{Gpu, Picture, Shot};
 use super::keys;
@@ -44,11 +44,12 @@ pub(super) fn show(
     let backward = model.orbit.backward();
     let (right, up) = model.orbit.axes();
     let scale = ui.ctx().pixels_per_point();
-    let seen = rect.height().min(rect.width());
+    let shorter = rect.height().min(rect.width());
     let size = model.runs[slot.index()].as_ref().filter(|_| model.shown.points);
-    let size = size.map(|run| super::plane::point_size(run, seen / model.orbit.height()) * scale);
+    let size = size.map(|run| super::plane::point_size(run, shorter / model.orbit.height()) * scale);
+    let (seen, to_seen) = on_view(ui, rect).unwrap_or((rect, Mat4::IDENTITY));
     let shot = Shot {
-        matrix,
+        matrix: to_seen * matrix,
         eye: model.orbit.eye(),
         light: Some((backward + 0.35 * up - 0.25 * right).normalize_or(Vec3::Z)),
         lift: 0.012 * model.orbit.radius,
@@ -68,7 +69,7 @@ pub(super) fn show(
             gpu.draw(painter.gl(), place, &picture, &shot);
         }
     });
-    ui.painter().add(egui::PaintCallback { rect, callback: Arc::new(callback) });
+    ui.painter().add(egui::PaintCallback { rect: seen, callback: Arc::new(callback) });
 
     let painter = ui.painter_at(rect);
     for (picked, colour) in [(model.pinned, Color32::from_rgb(255, 200, 0)), (model.hover, Color32::WHITE)] {
@@ -112,6 +113,19 @@ pub(super) fn show(
 /// From clip space to the screen.
 pub(super) fn on_screen(rect: Rect, clip: Vec2) -> Pos2 {
     rect.center() + egui::vec2(0.5 * rect.width() * clip.x, -0.5 * rect.height() * clip.y)
+}
+
+/// The part of a view that is on the screen, and what takes the view's clip space to that part's: a graphics card's
+/// viewport ends at the screen, a view that is scrolled does not. `None` when nothing is to be seen.
+pub(super) fn on_view(ui: &egui::Ui, rect: Rect) -> Option<(Rect, Mat4)> {
+    let seen = rect.intersect(ui.ctx().content_rect());
+    if !seen.is_positive() {
+        return None;
+    }
+    let scale = Vec2::new(rect.width() / seen.width(), rect.height() / seen.height());
+    let aside = rect.center() - seen.center();
+    let shift = Vec2::new(2.0 * aside.x / seen.width(), -2.0 * aside.y / seen.height());
+    Some((seen, Mat4::from_translation(shift.extend(0.0)) * Mat4::from_scale(scale.extend(1.0))))
 }
 
 /// From the screen to clip space.

@@ -153,7 +153,19 @@ fn update(picture: &mut Arc<Picture>, drawn: &mut Drawn, now: Drawn, make: impl 
 pub(super) struct Frames {
     last: f64,
     mean: f64,
-    first: Option<f64>,
+    first: First,
+}
+
+/// How far the page has come.
+#[derive(Clone, Copy, Debug, Default)]
+enum First {
+    /// No points yet.
+    #[default]
+    Empty,
+    /// The frame with the first points is being drawn.
+    Drawing,
+    /// It was shown, this many seconds after the page was opened.
+    Shown(f64),
 }
 
 impl Frames {
@@ -170,13 +182,22 @@ impl Frames {
 
     /// When the first points were shown, in seconds since the page was opened.
     pub(super) fn first_picture(&self) -> Option<f64> {
-        self.first
+        match self.first {
+            First::Shown(seconds) => Some(seconds),
+            First::Empty | First::Drawing => None,
+        }
     }
 
     /// Notes whether points are shown.
     pub(super) fn shown(&mut self, ctx: &egui::Context, points: bool) {
-        if points && self.first.is_none() {
-            self.first = Some(ctx.input(|i| i.time));
+        match self.first {
+            First::Empty if points => {
+                self.first = First::Drawing;
+                ctx.request_repaint();
+            }
+            // The next frame begins when this one was handed over.
+            First::Drawing => self.first = First::Shown(ctx.input(|i| i.time)),
+            First::Empty | First::Shown(_) => {}
         }
     }
 

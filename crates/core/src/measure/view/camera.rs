@@ -1,8 +1,6 @@
 //! Where the cameras of the view measure stand.
 
-use std::f64::consts::PI;
-
-use glam::{DMat3, DQuat, DVec2, DVec3};
+use glam::{DVec2, DVec3};
 
 use super::purpose;
 use crate::baseline::spherical_fibonacci;
@@ -46,7 +44,7 @@ pub(super) fn viewpoints(mesh: &SurfaceMesh, views: usize, seed: u64) -> Vec<Vie
     let (low, high) = mesh.bounds();
     let middle = low * 0.5 + high * 0.5;
     let radius = 0.5 * low.distance(high);
-    let turn = random_rotation(&mut Random::new(seed, purpose::TURN));
+    let turn = Random::new(seed, purpose::TURN).rotation();
     spherical_fibonacci(views)
         .into_iter()
         .enumerate()
@@ -62,13 +60,4 @@ pub(super) fn viewpoints(mesh: &SurfaceMesh, views: usize, seed: u64) -> Vec<Vie
             Viewpoint { camera, middle, radius, toward, right, up, distance }
         })
         .collect()
-}
-
-/// A uniform random rotation (Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
-fn random_rotation(random: &mut Random) -> DMat3 {
-    let [u, v, w] = [random.unit(), random.unit(), random.unit()];
-    let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
-    let (sin_v, cos_v) = libm::sincos(2.0 * PI * v);
-    let (sin_w, cos_w) = libm::sincos(2.0 * PI * w);
-    DMat3::from_quat(DQuat::from_xyzw(a * sin_v, a * cos_v, b * sin_w, b * cos_w).normalize())
 }

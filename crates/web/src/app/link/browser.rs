@@ -13,7 +13,7 @@ use crate::journal::Journal;
 
 /// A worker that works.
 pub(crate) struct EngineLink {
-    worker: Worker,
+    worker: Option<Worker>,
     answers: Rc<RefCell<VecDeque<Answer>>>,
     wake: Rc<dyn Fn()>,
     broken: Rc<Cell<bool>>,
@@ -21,26 +21,52 @@ pub(crate) struct EngineLink {
 }
 
 impl EngineLink {
-    /// Starts the worker; `wake` is called when it has something to say.
-    pub(crate) fn start(wake: impl Fn() + 'static) -> Result<Self, String> {
-        let wake: Rc<dyn Fn()> = Rc::new(wake);
-        let answers = Rc::default();
-        let broken = Rc::default();
-        let worker = start_worker(&answers, &wake, &broken)?;
-        Ok(Self { worker, answers, wake, broken, journal: Journal::default() })
+    /// The worker is started when there is work; `wake` is called when it has something to say.
+    pub(crate) fn new(wake: impl Fn() + 'static) -> Self {
+        Self {
+            worker: None,
+            answers: Rc::default(),
+            wake: Rc::new(wake),
+            broken: Rc::default(),
+            journal: Journal::default(),
+        }
     }
 
     /// Gives it work.
-    pub(crate) fn post(&mut self, job: &Job) {
-        self.journal.post(job.clone());
-        send(&self.worker, job);
+    pub(crate) fn post(&mut self, job: Job) {
+        if self.worker.is_none() {
+            self.start();
+        }
+        let jobs = self.journal.post(job);
+        self.send(&jobs);
+    }
+
+    fn start(&mut self) {
+        match start_worker(&self.answers, &self.wake, &self.broken) {
+            Ok(worker) => self.worker = Some(worker),
+            Err(reason) => {
+                self.answers.borrow_mut().push_back(Answer::Failed(reason));
+                (self.wake)();
+            }
+        }
+    }
+
+    fn send(&self, jobs: &[Job]) {
+        for job in jobs {
+            let bytes = postcard::to_stdvec(job).unwrap_or_default();
+            if let Some(worker) = &self.worker {
+                // A message of plain bytes can always be posted.
+                let _ = worker.post_message(&js_sys::Uint8Array::from(bytes.as_slice()));
+            }
+        }
     }
 
     /// What it has said since the last time.
     pub(crate) fn take(&mut self) -> Vec<Answer> {
         if self.broken.take() {
             self.restart();
-            let reason = "the work failed: perhaps the mesh is too large for the browser's memory";
+            let reason = "the work broke off, perhaps because it needs more memory than a browser gives; what was \
+                          shown before is still here";
             return vec![Answer::Failed(reason.into())];
         }
         let said: Vec<Answer> = self.answers.borrow_mut().drain(..).collect();
@@ -59,21 +85,14 @@ impl EngineLink {
     }
 
     fn restart(&mut self) {
-        self.worker.terminate();
+        if let Some(worker) = self.worker.take() {
+            worker.terminate();
+        }
         self.answers.borrow_mut().clear();
-        if let Ok(worker) = start_worker(&self.answers, &self.wake, &self.broken) {
-            self.worker = worker;
-        }
-        for job in self.journal.restart() {
-            send(&self.worker, &job);
-        }
+        self.start();
+        let again = self.journal.restart();
+        self.send(again.as_slice());
     }
-}
-
-fn send(worker: &Worker, job: &Job) {
-    let bytes = postcard::to_stdvec(job).unwrap_or_default();
-    // A message of plain bytes can always be posted.
-    let _ = worker.post_message(&js_sys::Uint8Array::from(bytes.as_slice()));
 }
 
 fn start_worker(

@@ -1,6 +1,6 @@
 //! An engine in a thread.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
@@ -11,46 +11,52 @@ use crate::engine::{Answer, Engine, Job};
 
 /// A thread that works.
 pub(crate) struct EngineLink {
-    jobs: Sender<Job>,
+    jobs: Sender<(u64, Job)>,
+    /// How many jobs were posted.
+    posted: u64,
     answers: Receiver<Answer>,
-    cancelled: Arc<AtomicBool>,
+    /// Jobs up to this number are given up.
+    cancelled: Arc<AtomicU64>,
 }
 
 impl EngineLink {
     /// Starts the thread; `wake` is called when it has something to say.
-    pub(crate) fn start(wake: impl Fn() + Send + Sync + 'static) -> Result<Self, String> {
-        let (jobs, work) = channel::<Job>();
+    pub(crate) fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
+        let (jobs, work) = channel();
         let (answer, answers) = channel();
-        let cancelled = Arc::new(AtomicBool::new(false));
+        let cancelled = Arc::new(AtomicU64::new(0));
         let telling = Telling {
             answer: Mutex::new(answer.clone()),
             wake: Box::new(wake),
             cancelled: Arc::clone(&cancelled),
             stage: Mutex::new(("", 0)),
             done: AtomicU64::new(0),
+            number: AtomicU64::new(0),
         };
-        let start = Instant::now();
-        std::thread::Builder::new()
-            .name("engine".into())
-            .spawn(move || {
-                let mut engine = Engine::default();
-                for job in work {
-                    let said = engine.handle(job, &telling, &|| start.elapsed().as_secs_f64());
-                    telling.cancelled.store(false, Ordering::Relaxed);
-                    if answer.send(said).is_err() {
-                        return;
-                    }
-                    (telling.wake)();
+        let (start, failed) = (Instant::now(), answer.clone());
+        let started = std::thread::Builder::new().name("engine".into()).spawn(move || {
+            let mut engine = Engine::default();
+            for (number, job) in work {
+                telling.number.store(number, Ordering::Relaxed);
+                let said = engine.handle(job, &telling, &|| start.elapsed().as_secs_f64());
+                if answer.send(said).is_err() {
+                    return;
                 }
-            })
-            .map_err(|e| format!("no thread: {e}"))?;
-        Ok(Self { jobs, answers, cancelled })
+                (telling.wake)();
+            }
+        });
+        if let Err(error) = started {
+            // The other end is held here.
+            let _ = failed.send(Answer::Failed(format!("no thread: {error}")));
+        }
+        Self { jobs, posted: 0, answers, cancelled }
     }
 
     /// Gives it work.
-    pub(crate) fn post(&mut self, job: &Job) {
+    pub(crate) fn post(&mut self, job: Job) {
+        self.posted += 1;
         // The thread ends only with the app: nobody is left to be told of a failure.
-        let _ = self.jobs.send(job.clone());
+        let _ = self.jobs.send((self.posted, job));
     }
 
     /// What it has said since the last time.
@@ -60,14 +66,16 @@ impl EngineLink {
 
     /// Asks it to give up the work in hand.
     pub(crate) fn cancel(&mut self) {
-        self.cancelled.store(true, Ordering::Relaxed);
+        self.cancelled.store(self.posted, Ordering::Relaxed);
     }
 }
 
 struct Telling {
     answer: Mutex<Sender<Answer>>,
     wake: Box<dyn Fn() + Send + Sync>,
-    cancelled: Arc<AtomicBool>,
+    cancelled: Arc<AtomicU64>,
+    /// Of the job in hand, from 1.
+    number: AtomicU64,
     stage: Mutex<(&'static str, u64)>,
     done: AtomicU64,
 }
@@ -101,6 +109,6 @@ impl Progress for Telling {
     }
 
     fn is_cancelled(&self) -> bool {
-        self.cancelled.load(Ordering::Relaxed)
+        self.cancelled.load(Ordering::Relaxed) >= self.number.load(Ordering::Relaxed)
     }
 }

@@ -1,0 +1,291 @@
+//! Beyond the paper: which of the wrapped points stay when more were caught than are wanted.
+//!
+//! The surface is cut into as many regions of equal mass as points are wanted: halves across the widest extent, again
+//! and again. Of the points in each region the most central one stays. So every region, and every half of halves, has
+//! its share, whatever open borders do to the wrapping; and weights are met.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::correct::Corrected;
+use crate::density::Density;
+use crate::ids::FaceId;
+use crate::mesh::SurfaceMesh;
+use crate::parallel;
+
+/// A face as a mass in one place.
+#[derive(Clone, Copy, Debug)]
+struct Item {
+    position: DVec3,
+    /// In points.
+    mass: f64,
+    face: FaceId,
+}
+
+/// Regions of equal mass. Faces lie in a row along which regions follow each other; a face larger than a region is cut
+/// into bands.
+#[derive(Clone, Debug)]
+pub(crate) struct Regions {
+    /// For each face where in the row it lies; the unit is a region.
+    along: Vec<Range<f64>>,
+    /// The centroids of the regions.
+    centroids: Vec<DVec3>,
+}
+
+impl Regions {
+    /// Cuts the surface into `n` regions, component after component. O(F log n).
+    pub(crate) fn new(mesh: &SurfaceMesh, density: &Density, n: usize) -> Self {
+        let scale = n as f64 / density.face_masses(mesh).iter().sum::<f64>();
+        let components = mesh.topology().components();
+        let mut items: Vec<Vec<Item>> = vec![Vec::new(); components.count];
+        for face in mesh.topology().face_ids() {
+            let [a, b, c] = mesh.triangle(face);
+            let item = Item {
+                position: a / 3.0 + b / 3.0 + c / 3.0,
+                mass: density.face_mass(mesh, face) * scale,
+                face,
+            };
+            items[components.of_face[face.index()] as usize].push(item);
+        }
+        // Components are cut from each other first, so that their shares are right to within a point.
+        let mut row: Vec<Item> = (0..)
+            .zip(&items)
+            .map(|(c, items)| {
+                let mass: f64 = items.iter().map(|i| i.mass).sum();
+                let middle = items.iter().map(|i| i.position / items.len() as f64).sum();
+                Item { position: middle, mass, face: FaceId(c) }
+            })
+            .collect();
+        cut(&mut row, 0.0);
+        let mut before = 0.0;
+        let mut starts = vec![0.0; components.count];
+        for component in row {
+            starts[component.face.index()] = before;
+            before += component.mass;
+        }
+        for (items, start) in items.iter_mut().zip(&starts) {
+            cut(items, *start);
+        }
+        let last = n - 1;
+        let mut along = vec![0.0..0.0; mesh.face_count()];
+        // The moments and masses of the regions.
+        let mut sums = vec![(DVec3::ZERO, 0.0); n];
+        for (items, start) in items.iter().zip(starts) {
+            let mut before = start;
+            for item in items {
+                let range = before..before + item.mass;
+                before = range.end;
+                let (first, end) = ((range.start as usize).min(last), (range.end as usize).min(last) + 1);
+                for (region, sum) in (first..end).zip(&mut sums[first..end]) {
+                    let from = range.start.max(region as f64);
+                    let shared = (range.end.min(region as f64 + 1.0) - from).max(0.0);
+                    let mass = item.mass.max(f64::MIN_POSITIVE);
+                    let from = (from - range.start) / mass;
+                    sum.0 += band_middle(mesh, item.face, from..from + shared / mass) * shared;
+                    sum.1 += shared;
+                }
+                along[item.face.index()] = range;
+            }
+        }
+        let middle = |(moment, mass): (DVec3, f64)| if mass > 0.0 { moment / mass } else { moment };
+        Self { along, centroids: sums.into_iter().map(middle).collect() }
+    }
+
+    fn region_at(&self, along: f64) -> usize {
+        (along as usize).min(self.centroids.len() - 1)
+    }
+
+    /// The region of a place.
+    fn region_of(&self, face: FaceId, barycentric: [f64; 3]) -> usize {
+        let range = &self.along[face.index()];
+        // The share of the face's area nearer to its first corner.
+        let along = 1.0 - barycentric[0];
+        self.region_at(range.start + (range.end - range.start) * along * along)
+    }
+
+    /// Of points caught, in any order, one a region stays, the one nearest to its centroid; a region without points gets
+    /// one of the next that has some to spare. All stay if there are not more than regions. The order is kept.
+    pub(crate) fn choose(&self, mesh: &SurfaceMesh, caught: Vec<Corrected>) -> Vec<Corrected> {
+        const CHUNK: usize = 1 << 13;
+        let n = self.centroids.len();
+        if caught.len() <= n {
+            return caught;
+        }
+        let mut keyed: Vec<(usize, f64, usize)> = parallel::map_chunks(caught.len(), CHUNK, |range| {
+            range
+                .map(|i| {
+                    let point = &caught[i].sample.point;
+                    let region = self.region_of(point.face, point.barycentric);
+                    (region, mesh.locate(point).distance_squared(self.centroids[region]), i)
+                })
+                .collect::<Vec<_>>()
+        })
+        .concat();
+        keyed.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let mut stays = vec![false; caught.len()];
+        let mut spare = Vec::new();
+        let mut taken = 0;
+        for (region, _, i) in keyed {
+            if taken <= region {
+                stays[i] = true;
+                taken += 1;
+            } else {
+                spare.push(i);
+            }
+        }
+        // What the last regions lack those before them give.
+        for i in spare.into_iter().rev().take(n - taken) {
+            stays[i] = true;
+        }
+        caught.into_iter().zip(stays).filter(|(_, stays)| *stays).map(|(c, _)| c).collect()
+    }
+}
+
+/// The centroid of the band of a face that lies between these shares of its area, seen from its first corner.
+fn band_middle(mesh: &SurfaceMesh, face: FaceId, shares: Range<f64>) -> DVec3 {
+    let [a, b, c] = mesh.triangle(face);
+    // Shares grow like the square of the distance.
+    let [p, q] = [shares.start, shares.end].map(|s| libm::sqrt(s.clamp(0.0, 1.0)));
+    let along = if p + q > 0.0 { 2.0 / 3.0 * (p * p + p * q + q * q) / (p + q) } else { 0.0 };
+    a + (0.5 * (b + c) - a) * along
+}
+
+/// Puts items in order so that whole regions lie together: the first lies at `start` of the row.
+fn cut(items: &mut [Item], start: f64) {
+    let mass: f64 = items.iter().map(|i| i.mass).sum();
+    if items.len() < 2 || mass <= 1.0 {
+        return;
+    }
+    let border = (start + 0.5 * mass).round();
+    let low = items.iter().fold(DVec3::INFINITY, |m, i| m.min(i.position));
+    let high = items.iter().fold(DVec3::NEG_INFINITY, |m, i| m.max(i.position));
+    let extent = high - low;
+    let axis = (1..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
+    let middle = split_by_mass(items, axis, border - start);
+    let (below, above) = items.split_at_mut(middle);
+    let between = start + below.iter().map(|i| i.mass).sum::<f64>();
+    #[cfg(feature = "parallel")]
+    {
+        /// Below this many items a half is not worth another thread.
+        const ALONE: usize = 1 << 12;
+        if below.len().max(above.len()) > ALONE {
+            rayon::join(|| cut(below, start), || cut(above, between));
+            return;
+        }
+    }
+    cut(below, start);
+    cut(above, between);
+}
+
+/// Reorders the items so that those before the returned place are the lowest along the axis and their mass is as near
+/// to `wanted` as whole items allow. Neither side is empty.
+fn split_by_mass(items: &mut [Item], axis: usize, wanted: f64) -> usize {
+    let order = |a: &Item, b: &Item| a.position[axis].total_cmp(&b.position[axis]).then(a.face.cmp(&b.face));
+    let (mut low, mut high) = (0, items.len());
+    let mut below = 0.0;
+    // Items before `low` are lower, items from `high` on are higher; `below` is the mass before `low`.
+    while high - low > 1 {
+        let middle = low + (high - low) / 2;
+        items[low..high].select_nth_unstable_by(middle - low, order);
+        let mass: f64 = items[low..middle].iter().map(|i| i.mass).sum();
+        if below + mass <= wanted {
+            below += mass;
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let behind = wanted - below > 0.5 * items[low].mass;
+    (low + usize::from(behind)).clamp(1, items.len() - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::correct::Corrected;
+    use crate::ids::StripId;
+    use crate::planted;
+    use crate::sample::{Origin, Sample, SurfacePoint};
+    use crate::shapes::{self, Shape};
+
+    fn caught(mesh: &SurfaceMesh, each: u32) -> Vec<Corrected> {
+        // On each face `each` points along the line from its first corner through its middle.
+        let point = |face, k: u32| {
+            let along = (f64::from(k) + 0.5) / f64::from(each);
+            let barycentric = [1.0 - along, 0.5 * along, 0.5 * along];
+            let sample = Sample {
+                point: SurfacePoint { face, barycentric },
+                strip: StripId(0),
+                place: glam::DVec2::ZERO,
+                origin: Origin::Wrapped,
+            };
+            Corrected { index: u64::from(face.0 * each + k), copies_removed: 0, sample }
+        };
+        mesh.topology().face_ids().flat_map(|face| (0..each).map(move |k| point(face, k))).collect()
+    }
+
+    #[test]
+    fn regions_of_a_square_are_quarters_of_quarters() {
+        let mesh = planted::mesh(&shapes::square(16));
+        let (low, high) = mesh.bounds();
+        let regions = Regions::new(&mesh, &Density::UNIFORM, 16);
+        let mut expected: Vec<(i32, i32)> = Vec::new();
+        let mut found: Vec<(i32, i32)> = Vec::new();
+        for i in 0..4 {
+            for j in 0..4 {
+                expected.push((250 * i + 125, 250 * j + 125));
+            }
+        }
+        for centroid in &regions.centroids {
+            let at = (*centroid - low) / (high - low).max_element() * 1000.0;
+            found.push((at.x.round() as i32, at.y.round() as i32));
+        }
+        found.sort_unstable();
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn one_point_stays_in_each_region_and_every_component_has_its_share() {
+        let mut soup = Shape::Cube.generate();
+        planted::join(
+            &mut soup,
+            &planted::moved(Shape::Sphere.generate(), |p| p * 1.3 + DVec3::new(5.0, 0.0, 0.0)),
+        );
+        planted::join(
+            &mut soup,
+            &planted::moved(Shape::Tetrahedron.generate(), |p| p * 0.1 - DVec3::new(5.0, 0.0, 0.0)),
+        );
+        let mesh = planted::mesh(&soup);
+        let components = mesh.topology().components();
+        let mut areas = vec![0.0; components.count];
+        for face in mesh.topology().face_ids() {
+            areas[components.of_face[face.index()] as usize] += mesh.face_area(face);
+        }
+        for n in [1, 2, 10, 77, 500] {
+            let regions = Regions::new(&mesh, &Density::UNIFORM, n);
+            let chosen = regions.choose(&mesh, caught(&mesh, 900));
+            assert_eq!(chosen.len(), n);
+            assert!(chosen.windows(2).all(|w| w[0].index < w[1].index), "the order is kept");
+            let mut counts = vec![0.0; components.count];
+            for c in &chosen {
+                counts[components.of_face[c.sample.point.face.index()] as usize] += 1.0;
+            }
+            for (count, area) in counts.iter().zip(&areas) {
+                let due = area / mesh.area() * n as f64;
+                assert!((count - due).abs() <= 1.0 + 1e-9, "{n}: {counts:?} of {areas:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn regions_without_points_take_from_the_next() {
+        let mesh = planted::mesh(&shapes::square(4));
+        let mut caught = caught(&mesh, 8);
+        caught.retain(|c| c.sample.point.face.index() >= 16);
+        let regions = Regions::new(&mesh, &Density::UNIFORM, 100);
+        assert_eq!(regions.choose(&mesh, caught.clone()).len(), 100);
+        caught.truncate(60);
+        assert_eq!(regions.choose(&mesh, caught).len(), 60);
+    }
+}
