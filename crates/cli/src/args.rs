@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use ldwrap::io::points::PointFormat;
+use ldwrap::io::points::{Attribute, PointFormat};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::shapes::Shape;
 use serde::Serialize;
@@ -67,7 +67,7 @@ pub(crate) enum Command {
 /// Where the mesh comes from.
 #[derive(Debug, Args)]
 pub(crate) struct MeshArgs {
-    /// The mesh: a PLY, OBJ, STL, glTF, GLB or OFF file, or `-` for stdin
+    /// The mesh: a PLY, OBJ, STL, glTF, GLB or OFF file, also compressed with gzip, or `-` for stdin
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
     /// The format of the mesh [default: told by its content, then by its name]
@@ -294,12 +294,17 @@ pub(crate) enum WeightsOf {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Outputs")]
 pub(crate) struct WrapOutputArgs {
-    /// Write the points: .ply, .xyz, .csv, .npy, .json or .obj, or `-` for stdout with --format
+    /// Write the points: .ply, .xyz, .csv, .npy, .npz, .json, .obj or .glb, or `-` for stdout with --format
     #[arg(short, long, value_name = "POINTS")]
     pub(crate) output: Option<PathBuf>,
     /// The format of the points [default: by the name's extension]
     #[arg(long, value_name = "FORMAT", requires = "output", value_parser = point_formats())]
     pub(crate) format: Option<PointFormat>,
+    /// What the points carry besides their position: flat-normal, smooth-normal, uv, color, vertex-color, material,
+    /// part, face, polygon, barycentric, strip, place, origin, cell-area, property:NAME of a PLY file; or all that
+    /// mesh and format have [default: flat-normal, face, barycentric, strip, place, origin, where the format has room]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', requires = "output")]
+    pub(crate) attributes: Vec<AttributeArg>,
     /// Draw the strips in the plane with their points, as SVG
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) strips: Option<PathBuf>,
@@ -312,6 +317,27 @@ pub(crate) struct WrapOutputArgs {
     /// Measure the points too, as `measure` does, and add that to the report
     #[arg(long, requires = "report")]
     pub(crate) quality: bool,
+}
+
+/// An attribute, or all of them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum AttributeArg {
+    All,
+    One(Attribute),
+}
+
+impl FromStr for AttributeArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "all" => Ok(Self::All),
+            text => text.parse().map(Self::One).map_err(|_| {
+                let known: Vec<String> = Attribute::FIXED.iter().map(ToString::to_string).collect();
+                format!("must be all, property:NAME, or one of {}", known.join(", "))
+            }),
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -366,7 +392,7 @@ impl ShapeFormat {
 pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) mesh: MeshArgs,
-    /// The points: a PLY, XYZ, CSV, NPY, JSON or OBJ file from any tool, or `-` for stdin
+    /// The points: a PLY, XYZ, CSV, NPY, NPZ, JSON, OBJ or GLB file from any tool, or `-` for stdin
     #[arg(value_name = "POINTS")]
     pub(crate) points: PathBuf,
     /// The format of the points [default: told by their content, then by the name]

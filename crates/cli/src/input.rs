@@ -5,7 +5,8 @@ use std::io::{Read, stdin as standard_input};
 use std::path::{Component, Path};
 
 use anyhow::{Context, anyhow};
-use ldwrap::io::{self, ReadError, Resolver, read_mesh};
+use ldwrap::attributes::MeshAttributes;
+use ldwrap::io::{Detail, MeshFormat, Model, read_model, read_model_as};
 use ldwrap::{CheckOptions, PolygonSoup, Progress, RepairReport, SurfaceMesh};
 
 use crate::args::{MeshArgs, MeshFormatArg};
@@ -18,35 +19,44 @@ pub(crate) struct Input {
     pub(crate) soup: PolygonSoup,
     pub(crate) mesh: SurfaceMesh,
     pub(crate) repaired: RepairReport,
+    /// What the file has besides the shape, as far as it was asked for.
+    pub(crate) attributes: MeshAttributes,
 }
 
 /// Reads and checks a mesh; `progress` hears the stages `read` and `check`.
 pub(crate) fn read(args: &MeshArgs, progress: &dyn Progress) -> anyhow::Result<Input> {
+    read_detail(args, Detail::Shape, progress)
+}
+
+/// Reads and checks a mesh with what it has besides the shape.
+pub(crate) fn read_detail(args: &MeshArgs, detail: Detail, progress: &dyn Progress) -> anyhow::Result<Input> {
     let stdin = args.mesh.as_os_str() == "-";
     let name = if stdin { "stdin".to_owned() } else { args.mesh.display().to_string() };
     progress.begin("read", 1);
     let bytes = bytes(&args.mesh, stdin).with_context(|| name.clone())?;
     let folder = if stdin { None } else { args.mesh.parent() };
     let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
-    let soup = match args.mesh_format {
-        Some(format) => read_as(format, &bytes, &resolver),
-        None => read_mesh(&bytes, Some(&name), &resolver),
+    let model = match args.mesh_format {
+        Some(format) => read_model_as(format.into(), &bytes, detail, &resolver),
+        None => read_model(&bytes, Some(&name), detail, &resolver),
     };
-    let soup = soup.with_context(|| name.clone())?;
+    let Model { soup, attributes } = model.with_context(|| name.clone())?;
     drop(bytes);
     progress.begin("check", 1);
     let options = CheckOptions { turn_outward: !args.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
-    Ok(Input { name, soup, mesh, repaired })
+    Ok(Input { name, soup, mesh, repaired, attributes })
 }
 
-fn read_as(format: MeshFormatArg, bytes: &[u8], resolver: &Resolver<'_>) -> Result<PolygonSoup, ReadError> {
-    match format {
-        MeshFormatArg::Ply => io::ply::read(bytes),
-        MeshFormatArg::Obj => io::obj::read(bytes),
-        MeshFormatArg::Stl => io::stl::read(bytes),
-        MeshFormatArg::Gltf => io::gltf::read(bytes, resolver),
-        MeshFormatArg::Off => io::off::read(bytes),
+impl From<MeshFormatArg> for MeshFormat {
+    fn from(arg: MeshFormatArg) -> Self {
+        match arg {
+            MeshFormatArg::Ply => Self::Ply,
+            MeshFormatArg::Obj => Self::Obj,
+            MeshFormatArg::Stl => Self::Stl,
+            MeshFormatArg::Gltf => Self::Gltf,
+            MeshFormatArg::Off => Self::Off,
+        }
     }
 }
 

@@ -5,14 +5,15 @@ use std::path::Path;
 
 use glam::DVec3;
 use ldwrap::equalize::{Cameras, EqualizeOptions, ForViews};
-use ldwrap::io::points::PointFormat;
+use ldwrap::io::Detail;
+use ldwrap::io::points::{Attribute, PointFormat};
 use ldwrap::pipeline::{Options, Request, SampleOrder, Selection};
 use ldwrap::segment::SegmentOptions;
 use ldwrap::sequence::Sequence;
 
 use crate::args::{
-    ForViewsArgs, OrderArg, RequestArgs, SegmentArgs, SelectArg, SequenceArg, SequenceArgs, WrapArgs,
-    WrapOutputArgs,
+    AttributeArg, ForViewsArgs, OrderArg, RequestArgs, SegmentArgs, SelectArg, SequenceArg, SequenceArgs,
+    WrapArgs, WrapOutputArgs,
 };
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
@@ -22,6 +23,30 @@ use crate::output::{Destination, Targets};
 pub(crate) struct PointOutput {
     pub(crate) destination: Destination,
     pub(crate) format: PointFormat,
+    pub(crate) carried: Carried,
+}
+
+/// What points carry besides their position.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Carried {
+    /// What every format carries when nothing was asked for.
+    Usual,
+    /// These attributes.
+    Named(Vec<Attribute>),
+    /// All that mesh and format have.
+    All,
+}
+
+impl Carried {
+    /// How much must be read of the mesh for it.
+    pub(crate) fn detail(&self) -> Detail {
+        match self {
+            Self::Usual => Detail::Shape,
+            Self::Named(names) if names.contains(&Attribute::Color) => Detail::Textures,
+            Self::Named(_) => Detail::Attributes,
+            Self::All => Detail::Textures,
+        }
+    }
 }
 
 /// Where the results of `wrap` go.
@@ -39,7 +64,7 @@ impl WrapOutputs {
     /// Checks the outputs against one another and against the file that is read.
     pub(crate) fn new(args: &WrapOutputArgs, input: &Path) -> Outcome<Self> {
         let mut targets = Targets::default();
-        let points = args.output.as_deref().map(|path| point_output(path, args.format, &mut targets));
+        let points = args.output.as_deref().map(|path| point_output(path, args, &mut targets));
         let outputs = Self {
             points: points.transpose()?,
             strips: args.strips.as_deref().map(|path| targets.add("--strips", path)),
@@ -52,18 +77,44 @@ impl WrapOutputs {
     }
 }
 
-fn point_output(path: &Path, format: Option<PointFormat>, targets: &mut Targets) -> Outcome<PointOutput> {
+fn point_output(path: &Path, args: &WrapOutputArgs, targets: &mut Targets) -> Outcome<PointOutput> {
     let destination = targets.add("--output", path);
-    let format = match (format, &destination) {
+    let format = match (args.format, &destination) {
         (Some(format), _) => format,
         (None, Destination::Stdout) => {
             return Err(Failure::wrong_use(
-                "points on stdout need a format: add --format ply, ply-ascii, xyz, csv, npy, json or obj",
+                "points on stdout need a format: add --format ply, ply-ascii, xyz, csv, npy, npz, json, obj or glb",
             ));
         }
         (None, Destination::File(path)) => point_format(path)?,
     };
-    Ok(PointOutput { destination, format })
+    Ok(PointOutput { destination, format, carried: carried(&args.attributes, format)? })
+}
+
+fn carried(arguments: &[AttributeArg], format: PointFormat) -> Outcome<Carried> {
+    refuse_repeated("--attributes", arguments, |argument| match argument {
+        AttributeArg::All => "all".to_owned(),
+        AttributeArg::One(attribute) => attribute.to_string(),
+    })?;
+    if arguments.is_empty() {
+        return Ok(Carried::Usual);
+    }
+    if let [AttributeArg::All] = arguments {
+        return Ok(Carried::All);
+    }
+    let mut attributes = Vec::new();
+    for argument in arguments {
+        let AttributeArg::One(attribute) = argument else {
+            return Err(Failure::wrong_use("--attributes: all stands alone: leave out the others"));
+        };
+        if !attribute.fits(format) {
+            return Err(Failure::wrong_use(format!(
+                "--attributes: {format} cannot hold {attribute}: write .ply, .csv, .npz, .json or .glb"
+            )));
+        }
+        attributes.push(attribute.clone());
+    }
+    Ok(Carried::Named(attributes))
 }
 
 /// The format that a file's name stands for.
@@ -75,7 +126,7 @@ fn point_format(path: &Path) -> Outcome<PointFormat> {
             None => "its name has no extension to tell the format by".to_owned(),
         };
         Failure::wrong_use(format!(
-            "{}: {what}: known are .ply, .xyz, .csv, .npy, .json and .obj; or choose one with --format",
+            "{}: {what}: known are .ply, .xyz, .csv, .npy, .npz, .json, .obj and .glb; or choose one with --format",
             path.display()
         ))
     })

@@ -4,20 +4,61 @@ use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use ldwrap::io::points::{PointFormat, PointRow, read_points, write_points};
+use ldwrap::io::points::{Attribute, PointFormat, PointRow, gather, read_points, write_fields, write_points};
 use ldwrap::spatial::nearest;
 use ldwrap::{Progress, Sample, SurfaceMesh, SurfacePoint};
 use serde::Serialize;
 
+use crate::input::Input;
+use crate::job::{Carried, PointOutput};
+
 /// Points nearer to the surface than this share of the mesh's size are on it: rounding to single precision.
 const ON_SURFACE: f64 = 1e-6;
 
-/// Samples as a file.
-pub(crate) fn bytes(mesh: &SurfaceMesh, samples: &[Sample], format: PointFormat) -> anyhow::Result<Vec<u8>> {
-    let rows: Vec<PointRow> = samples.iter().map(|sample| PointRow::new(mesh, sample)).collect();
+/// Samples as a file, with what they carry.
+pub(crate) fn bytes(input: &Input, samples: &[Sample], wanted: &PointOutput) -> anyhow::Result<Vec<u8>> {
+    let Input { name, mesh, attributes, .. } = input;
     let mut bytes = Vec::new();
-    write_points(format, &rows, &mut bytes)?;
+    let carried = match &wanted.carried {
+        Carried::Usual => {
+            let rows: Vec<PointRow> = samples.iter().map(|sample| PointRow::new(mesh, sample)).collect();
+            write_points(wanted.format, &rows, &mut bytes)?;
+            return Ok(bytes);
+        }
+        Carried::Named(names) => names.clone(),
+        Carried::All => {
+            let numbers = attributes.numbers.iter().map(|(name, _)| Attribute::Number(name.clone()));
+            let all = Attribute::FIXED.into_iter().chain(numbers.filter(|number| is_other(number)));
+            all.filter(|one| one.is_in(attributes) && one.fits(wanted.format)).collect()
+        }
+    };
+    let fields = gather(mesh, attributes, samples, &carried)
+        .map_err(|error| anyhow!("{name}: {error}: leave it out of --attributes"))?;
+    write_fields(wanted.format, &fields, &mut bytes)?;
     Ok(bytes)
+}
+
+/// Whether a number of the file is none of those that attributes are made of.
+fn is_other(number: &Attribute) -> bool {
+    const KNOWN: [&str; 16] = [
+        "nx",
+        "ny",
+        "nz",
+        "red",
+        "green",
+        "blue",
+        "alpha",
+        "s",
+        "t",
+        "u",
+        "v",
+        "texture_u",
+        "texture_v",
+        "diffuse_red",
+        "diffuse_green",
+        "diffuse_blue",
+    ];
+    !matches!(number, Attribute::Number(name) if KNOWN.contains(&&**name))
 }
 
 /// Points from a file, each at the nearest place of a mesh.

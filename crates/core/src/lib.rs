@@ -51,6 +51,7 @@
 //! Features: `io` (default; one feature a format: `obj`, `gltf`, `ply`, `stl`, `csv`, `json`), `parallel` (default; uses
 //! every core), `serde`.
 
+pub mod attributes;
 pub mod baseline;
 pub mod correct;
 pub mod density;

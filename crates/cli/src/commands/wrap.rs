@@ -27,7 +27,8 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     let options = job::options(args)?;
     let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
     let stages = Stages::new(quiet);
-    let input = input::read(&args.mesh, &stages)?;
+    let detail = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
+    let input = input::read_detail(&args.mesh, detail, &stages)?;
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
@@ -54,7 +55,8 @@ struct Job<'a> {
 }
 
 fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
-    let Job { input: Input { mesh, repaired, .. }, density, options } = job;
+    let Job { input, density, options } = job;
+    let Input { mesh, repaired, .. } = input;
     let mut outputs = Outputs::default();
     if wanted.strips.is_some() || wanted.preview.is_some() {
         stages.begin("draw", 0);
@@ -69,7 +71,7 @@ fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyh
     }
     if let Some(wanted) = &wanted.points {
         stages.begin("write", 0);
-        outputs.stage(&wanted.destination, points::bytes(mesh, &run.samples, wanted.format)?)?;
+        outputs.stage(&wanted.destination, points::bytes(input, &run.samples, wanted)?)?;
     }
     let quality = wanted.quality.then(|| {
         let points: Vec<SurfacePoint> = run.samples.iter().map(|sample| sample.point).collect();

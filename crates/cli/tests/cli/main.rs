@@ -1,5 +1,6 @@
 //! Black-box tests of the program: what a person types, sees and gets.
 
+mod attributes;
 mod bad_input;
 mod common;
 mod compare;

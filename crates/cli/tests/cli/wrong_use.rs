@@ -65,7 +65,7 @@ fn a_common_factor_of_the_bases_is_named() {
 #[test]
 fn unknown_point_formats_are_refused_with_the_known_ones() {
     let folder = Folder::with_octahedron();
-    let known = [".ply", ".xyz", ".csv", ".npy", ".json", ".obj", "--format"];
+    let known = [".ply", ".xyz", ".csv", ".npy", ".npz", ".json", ".obj", ".glb", "--format"];
     folder.run("wrap octahedron.obj -o points.docx").refused(&known).says(&["points.docx", ".docx"]);
     folder.run("wrap octahedron.obj -o points").refused(&known);
     folder.run("wrap octahedron.obj -o -").refused(&["stdout", "--format"]);

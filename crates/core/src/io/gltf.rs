@@ -1,7 +1,9 @@
-//! Reads the triangles of glTF 2.0 scenes, with `gltf`.
+//! Reads the triangles of glTF 2.0 scenes and what belongs to them, with `gltf`.
 
 mod accessor;
+mod attributes;
 mod buffers;
+mod material;
 
 use std::collections::BTreeMap;
 
@@ -10,8 +12,9 @@ use gltf::mesh::{Mode, Primitive};
 use gltf::{Document, Gltf, Node, Semantic};
 
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, Resolver, brief, push_polygon};
+use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon};
 use crate::mesh::PolygonSoup;
+use attributes::Collector;
 use buffers::Buffers;
 
 /// How many vertices and corners a scene may have: a few bytes can ask for the same mesh a million times.
@@ -38,13 +41,70 @@ const HARMLESS: [&str; 7] = [
 /// # Errors
 /// [`ReadError`]: with the part of the document.
 pub fn read(bytes: &[u8], resolver: &Resolver<'_>) -> Result<PolygonSoup, ReadError> {
+    read_model(bytes, Detail::Shape, resolver).map(|model| model.soup)
+}
+
+/// Reads a `.gltf` or `.glb` file with the normals, texture coordinates and `COLOR_0` of its corners, the names of its
+/// nodes as parts (of their meshes, where a node has none) and of its materials; for [`Detail::Textures`] also the base
+/// colours of materials: factor, texture (PNG or JPEG) with its sampler, and `KHR_texture_transform`.
+///
+/// # Errors
+/// [`ReadError`]: with the part of the document.
+pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Result<Model, ReadError> {
     let (document, blob) = parse(bytes)?;
     let buffers = Buffers::load(&document, blob, resolver)?;
     let mut soup = PolygonSoup::default();
+    let mut collector = (detail >= Detail::Attributes).then(Collector::default);
+    for_each_mesh(&document, |node, mesh, transform| {
+        if let Some(collector) = &mut collector {
+            collector.enter(node, mesh, transform);
+        }
+        add_mesh(&mut soup, collector.as_mut(), mesh, transform, &buffers)
+    })?;
+    let (mut attributes, materials) = collector.map(Collector::finish).unwrap_or_default();
+    if detail >= Detail::Textures {
+        material::load(&document, &materials, &mut attributes, &buffers, resolver)?;
+    }
+    Ok(Model { soup, attributes })
+}
+
+/// The positions of all meshes of the scene, whatever they are made of.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn vertices(bytes: &[u8], resolver: &Resolver<'_>) -> Result<Vec<DVec3>, ReadError> {
+    let (document, blob) = parse(bytes)?;
+    let buffers = Buffers::load(&document, blob, resolver)?;
+    let mut vertices = Vec::new();
+    for_each_mesh(&document, |_, mesh, transform| {
+        let place = Place::Item("mesh", mesh.index());
+        for positions in mesh.primitives().filter_map(|primitive| primitive.get(&Semantic::Positions)) {
+            if positions.count() > LARGEST - vertices.len() {
+                return Err(ReadError::TooLarge {
+                    format: MeshFormat::Gltf,
+                    place,
+                    what: "vertices",
+                    limit: LARGEST,
+                });
+            }
+            let local = accessor::vectors(&positions, "positions", &buffers)
+                .map_err(|problem| malformed(place, problem))?;
+            vertices.extend(local.into_iter().map(|p| transform.transform_point3(DVec3::from_array(p))));
+        }
+        Ok(())
+    })?;
+    Ok(vertices)
+}
+
+/// Calls `f` with every node of the scene that shows a mesh, the mesh, and where it stands.
+fn for_each_mesh(
+    document: &Document,
+    mut f: impl FnMut(&Node<'_>, &gltf::Mesh<'_>, DAffine3) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
     let mut seen = vec![false; document.nodes().len()];
     // Children are put on the stack in reverse: parts come in the order of the file.
     let mut stack: Vec<(Node<'_>, DAffine3)> =
-        roots(&document).into_iter().rev().map(|n| (n, DAffine3::IDENTITY)).collect();
+        roots(document).into_iter().rev().map(|n| (n, DAffine3::IDENTITY)).collect();
     while let Some((node, parent)) = stack.pop() {
         if std::mem::replace(&mut seen[node.index()], true) {
             return Err(malformed(
@@ -54,12 +114,12 @@ pub fn read(bytes: &[u8], resolver: &Resolver<'_>) -> Result<PolygonSoup, ReadEr
         }
         let transform = parent * local(&node);
         if let Some(mesh) = node.mesh() {
-            add_mesh(&mut soup, &mesh, transform, &buffers)?;
+            f(&node, &mesh, transform)?;
         }
         let children: Vec<_> = node.children().map(|child| (child, transform)).collect();
         stack.extend(children.into_iter().rev());
     }
-    Ok(soup)
+    Ok(())
 }
 
 /// The checked document and the binary chunk.
@@ -141,6 +201,7 @@ fn local(node: &Node<'_>) -> DAffine3 {
 
 fn add_mesh(
     soup: &mut PolygonSoup,
+    mut collector: Option<&mut Collector>,
     mesh: &gltf::Mesh<'_>,
     transform: DAffine3,
     buffers: &Buffers,
@@ -161,9 +222,10 @@ fn add_mesh(
                 if count > LARGEST - first {
                     return Err(too_large("vertices"));
                 }
-                let local =
-                    accessor::positions(&positions, buffers).map_err(|problem| malformed(place, problem))?;
-                soup.positions.extend(local.into_iter().map(|p| transform.transform_point3(p)));
+                let local = accessor::vectors(&positions, "positions", buffers)
+                    .map_err(|problem| malformed(place, problem))?;
+                let local = local.into_iter().map(DVec3::from_array);
+                soup.positions.extend(local.map(|p| transform.transform_point3(p)));
                 first_vertex.insert(positions.index(), first);
                 first
             }
@@ -186,9 +248,19 @@ fn add_mesh(
         if indices.len().saturating_mul(3) > LARGEST - soup.corners.len().min(LARGEST) {
             return Err(too_large("corners"));
         }
+        let polygons = soup.polygon_count();
+        if let Some(collector) = collector.as_deref_mut() {
+            collector.begin(&primitive, count, buffers).map_err(|problem| malformed(place, problem))?;
+        }
         for [a, b, c] in triangles(&primitive, &indices) {
             let triangle = if turned { [a, c, b] } else { [a, b, c] };
+            if let Some(collector) = collector.as_deref_mut() {
+                collector.triangle(soup.corners.len(), triangle);
+            }
             push_polygon(soup, triangle.map(|index| index + first as u32), MeshFormat::Gltf)?;
+        }
+        if let Some(collector) = collector.as_deref_mut() {
+            collector.end(polygons..soup.polygon_count());
         }
     }
     Ok(())

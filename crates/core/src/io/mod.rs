@@ -17,4 +17,4 @@ mod read;
 pub mod stl;
 
 pub use detect::{MeshFormat, detect};
-pub use read::{Place, ReadError, Resolver, read_mesh};
+pub use read::{Detail, Model, Place, ReadError, Resolver, read_mesh, read_model, read_model_as};

@@ -1,4 +1,7 @@
-//! Reads the polygons of Wavefront OBJ files, with `tobj`.
+//! Reads Wavefront OBJ files: the polygons with `tobj`, what belongs to them in `attributes` and `material`.
+
+mod attributes;
+mod material;
 
 use std::io::{self, BufRead, Read};
 
@@ -6,16 +9,39 @@ use glam::DVec3;
 use tobj::{LoadError, LoadOptions};
 
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, brief, push_polygon, text};
+use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
 /// Reads an OBJ file: all its vertices and its faces with any number of corners; relative (negative) indices and
-/// continued lines are understood. Groups, materials, lines and points are passed over.
+/// continued lines are understood. Lines and points are passed over.
 ///
 /// # Errors
 /// [`ReadError`]: with the line.
 pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
-    let plain = plain(&text(bytes));
+    read_text(&text(bytes))
+}
+
+/// Reads an OBJ file with the normals (`vn`), texture coordinates (`vt`) and colours (three sRGB numbers from 0 to 1
+/// behind the position) of its corners, the parts (`o` and `g`, whichever came last) and names of materials; for
+/// [`Detail::Textures`] also its material libraries (`mtllib`): `Kd` (sRGB), `d` or `Tr`, and `map_Kd` with its
+/// options `-o`, `-s` and `-clamp`.
+///
+/// # Errors
+/// [`ReadError`]: with the line; a material library or picture that the resolver does not have.
+pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Result<Model, ReadError> {
+    let text = text(bytes);
+    let mut model = Model::from(read_text(&text)?);
+    if detail >= Detail::Attributes {
+        let libraries = attributes::read(&text, &mut model)?;
+        if detail >= Detail::Textures {
+            material::load(&libraries, &mut model.attributes, resolver)?;
+        }
+    }
+    Ok(model)
+}
+
+fn read_text(text: &str) -> Result<PolygonSoup, ReadError> {
+    let plain = plain(text);
     let mut lines = LineCounter { rest: plain.as_bytes(), line: 0 };
     let options = LoadOptions { triangulate: false, ..LoadOptions::default() };
     let (models, _) = tobj::load_obj_buf(&mut lines, &options, |_| Err(LoadError::GenericFailure))
@@ -45,24 +71,8 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
 fn plain(text: &str) -> String {
     let mut plain = String::with_capacity(2 * text.len());
     let mut vertices = 0;
-    let mut lines = text.lines();
-    let mut joined = String::new();
-    while let Some(line) = lines.next() {
-        let mut line = line;
-        let mut breaks = 1;
-        if line.trim_end().ends_with('\\') {
-            joined.clear();
-            let mut next = Some(line);
-            while let Some(part) = next {
-                let part = part.trim_end();
-                joined.push_str(part.trim_end_matches('\\'));
-                joined.push(' ');
-                next = if part.ends_with('\\') { lines.next() } else { None };
-                breaks += usize::from(next.is_some());
-            }
-            line = &joined;
-        }
-        let mut words = line.split('#').next().unwrap_or_default().split_ascii_whitespace();
+    for_each_statement(text, |statement, line_breaks| {
+        let mut words = statement.split('#').next().unwrap_or_default().split_ascii_whitespace();
         match words.next() {
             Some("v") => {
                 vertices += 1;
@@ -82,13 +92,36 @@ fn plain(text: &str) -> String {
             }
             _ => {}
         }
-        plain.extend(std::iter::repeat_n('\n', breaks));
-    }
+        plain.extend(std::iter::repeat_n('\n', line_breaks));
+    });
     let mut all: String =
         (1..=vertices).fold("f".into(), |all, vertex: usize| all + " " + &vertex.to_string());
     all.push('\n');
     plain.insert_str(0, &all);
     plain
+}
+
+/// Calls `f` with every line, and how many lines of the file it takes: those that end in `\` go on in the next.
+fn for_each_statement(text: &str, mut f: impl FnMut(&str, usize)) {
+    let mut lines = text.lines();
+    let mut joined = String::new();
+    while let Some(line) = lines.next() {
+        if !line.trim_end().ends_with('\\') {
+            f(line, 1);
+            continue;
+        }
+        joined.clear();
+        let mut line_breaks = 1;
+        let mut next = Some(line);
+        while let Some(part) = next {
+            let part = part.trim_end();
+            joined.push_str(part.trim_end_matches('\\'));
+            joined.push(' ');
+            next = if part.ends_with('\\') { lines.next() } else { None };
+            line_breaks += usize::from(next.is_some());
+        }
+        f(&joined, line_breaks);
+    }
 }
 
 /// Bytes that know the line they are at, because the library does not.

@@ -1,24 +1,35 @@
 //! Reads the object file format of Geomview (<http://www.geomview.org/docs/html/OFF.html>). Own code: no kept
 //! library reads it.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3, DVec4};
 
+use crate::attributes::{CornerValues, MeshAttributes, from_srgb};
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, brief, push_polygon, text};
+use crate::io::read::{Detail, Model, Place, ReadError, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
-/// Reads `OFF`, also with texture coordinates, colours, normals (`ST`, `C`, `N` before the word), which are passed
-/// over. Polygons may have any number of corners; comments, empty lines, counts in the first line and a missing
+/// Reads `OFF`, also with texture coordinates, colours, normals (`ST`, `C`, `N` before the word). Polygons may have any number of corners; comments, empty lines, counts in the first line and a missing
 /// first word are allowed; what follows the last face is ignored.
 ///
 /// # Errors
 /// [`ReadError`]: with the line.
 pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
+    read_model(bytes, Detail::Shape).map(|model| model.soup)
+}
+
+/// Reads `OFF` with what the letters before the word announce at vertices, in Geomview's order: position, normal (`N`),
+/// colour (`C`: sRGB, 0 to 1, or 0 to 255 if one is larger than 1), texture coordinates (`ST`).
+///
+/// # Errors
+/// As [`read`].
+pub fn read_model(bytes: &[u8], detail: Detail) -> Result<Model, ReadError> {
     let text = text(bytes);
     let mut lines = Lines { lines: text.lines().enumerate(), last: 0 };
     let (mut place, mut line) = lines.next("the head")?;
     let word_end = line.find(|c: char| !c.is_ascii_alphabetic() && c != '4').unwrap_or(line.len());
     let (word, rest) = line.split_at(word_end);
+    let mut columns = Columns::announced(word);
+    columns.values.resize(if detail >= Detail::Attributes { columns.letters.len() } else { 0 }, Vec::new());
     if word.to_ascii_uppercase().ends_with("OFF") {
         // Geomview writes `nOFF` for any number of dimensions, `NOFF` for normals.
         if word.contains('4') || word == "nOFF" {
@@ -46,6 +57,9 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
         let mut numbers = line.split_whitespace();
         let mut next = || number(&mut numbers, place, "a coordinate");
         soup.positions.push(DVec3::new(next()?, next()?, next()?));
+        if !columns.values.is_empty() {
+            columns.read(&mut numbers, place)?;
+        }
     }
     let mut corners = Vec::new();
     for _ in 0..face_count {
@@ -58,7 +72,92 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
         }
         push_polygon(&mut soup, corners.iter().copied(), MeshFormat::Off)?;
     }
-    Ok(soup)
+    let attributes = columns.finish(&soup.corners);
+    Ok(Model { soup, attributes })
+}
+
+/// What stands at a vertex behind the position, in the order of the file.
+struct Columns {
+    letters: Vec<Letter>,
+    /// For each of the letters the numbers of all vertices, if they are wanted.
+    values: Vec<Vec<f64>>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Letter {
+    Normal,
+    Color,
+    Texture,
+}
+
+impl Columns {
+    fn announced(word: &str) -> Self {
+        let prefix = word.to_ascii_uppercase();
+        let prefix = prefix.strip_suffix("OFF").unwrap_or_default();
+        let known = [("N", Letter::Normal), ("C", Letter::Color), ("ST", Letter::Texture)];
+        let letters =
+            known.into_iter().filter(|(letter, _)| prefix.contains(letter)).map(|(_, l)| l).collect();
+        Self { letters, values: Vec::new() }
+    }
+
+    /// Reads a vertex; colours may have three or four numbers.
+    fn read<'a>(
+        &mut self,
+        numbers: &mut impl Iterator<Item = &'a str>,
+        place: Place,
+    ) -> Result<(), ReadError> {
+        let mut rest: Vec<f64> = Vec::new();
+        for word in numbers {
+            rest.push(number(&mut std::iter::once(word), place, "a number of the vertex")?);
+        }
+        let texture = if self.letters.contains(&Letter::Texture) { 2 } else { 0 };
+        let mut rest = &rest[..];
+        for (letter, values) in self.letters.iter().zip(&mut self.values) {
+            let count = match letter {
+                Letter::Normal => 3,
+                Letter::Color if rest.len() == 3 + texture => 3,
+                Letter::Color => 4,
+                Letter::Texture => 2,
+            };
+            let Some((own, others)) = rest.split_at_checked(count) else {
+                let problem = format!("{} numbers are missing at the vertex", count - rest.len());
+                return Err(ReadError::Malformed { format: MeshFormat::Off, place, problem });
+            };
+            values.extend_from_slice(own);
+            if count == 3 && *letter == Letter::Color {
+                // Without alpha: as bright as the largest there may be.
+                values.push(f64::INFINITY);
+            }
+            rest = others;
+        }
+        Ok(())
+    }
+
+    fn finish(self, corners: &[u32]) -> MeshAttributes {
+        let mut found = MeshAttributes::default();
+        for (letter, values) in self.letters.iter().zip(self.values) {
+            match letter {
+                Letter::Normal => {
+                    let normals = values.chunks_exact(3).map(|n| DVec3::from_slice(n).normalize_or_zero());
+                    found.normals = CornerValues::by_vertex(normals.collect(), corners);
+                }
+                Letter::Color => {
+                    let bytes = values.iter().any(|&value| value > 1.0 && value.is_finite());
+                    let largest = if bytes { 255.0 } else { 1.0 };
+                    let colors = values.chunks_exact(4).map(|rgba| {
+                        let [r, g, b, a] = [0, 1, 2, 3].map(|i| (rgba[i] / largest).clamp(0.0, 1.0));
+                        DVec4::new(from_srgb(r), from_srgb(g), from_srgb(b), a)
+                    });
+                    found.colors = CornerValues::by_vertex(colors.collect(), corners);
+                }
+                Letter::Texture => {
+                    let uv = values.chunks_exact(2).map(DVec2::from_slice).collect();
+                    found.uv = vec![CornerValues::by_vertex(uv, corners)];
+                }
+            }
+        }
+        found
+    }
 }
 
 /// Lines that are not empty, without comments.

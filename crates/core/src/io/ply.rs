@@ -1,5 +1,7 @@
 //! Reads PLY files in all three encodings, with `ply-rs-bw`.
 
+mod attributes;
+
 use std::io::ErrorKind;
 
 use glam::DVec3;
@@ -9,9 +11,11 @@ use ply_rs_bw::ply::{
     ScalarType,
 };
 
+use crate::attributes::MeshAttributes;
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, brief, push_polygon};
+use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon};
 use crate::mesh::PolygonSoup;
+use attributes::{Face, Faces, Record};
 
 /// Reads a PLY file: `x`, `y`, `z` of the element `vertex` in any type of number, the list `vertex_indices` or
 /// `vertex_index` of the element `face`, and triangle strips (`tristrips`); everything else is passed over.
@@ -20,16 +24,36 @@ use crate::mesh::PolygonSoup;
 /// [`ReadError`]: with the line of text files. Counts are checked against the bytes that are there before anything
 /// is read.
 pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
+    read_model(bytes, Detail::Shape, &|_| Err("nothing is looked for".to_owned())).map(|model| model.soup)
+}
+
+/// Reads a PLY file with what other programs write at vertices: `nx ny nz`; `red green blue` and `alpha` (sRGB, integers
+/// up to the largest of their type, or reals up to 1); texture coordinates `s t`, `u v` or `texture_u texture_v`; all
+/// scalars under their names; and at faces: lists `texcoord`, as MeshLab writes them, `red green blue` where the
+/// vertices have no colour, and `material_index`. For [`Detail::Textures`] also the picture that the first comment
+/// `TextureFile` names.
+///
+/// # Errors
+/// As [`read`]; a picture that the resolver does not have.
+pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Result<Model, ReadError> {
     let (header, start) = read_header(bytes)?;
     let mut reader = Reader::new(&bytes[start..]);
     let mut soup = PolygonSoup::default();
     let header_lines = bytes[..start].iter().filter(|&&byte| byte == b'\n').count();
+    let (mut vertices, mut face_values) = (Vec::<Record>::new(), Faces::default());
     for element in header.elements.values() {
         check_count(element, &header, reader.get_ref().len())?;
         let error = |error| explain(error, &header, header_lines);
         match element.name.as_str() {
             "vertex" => {
                 require(element, &["x", "y", "z"], |kind| matches!(kind, PropertyType::Scalar(_)))?;
+                if detail >= Detail::Attributes {
+                    let parser = Parser::<Record>::new();
+                    vertices =
+                        parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
+                    soup.positions = attributes::positions(element, &vertices);
+                    continue;
+                }
                 let parser = Parser::<Vertex>::new();
                 let vertices =
                     parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
@@ -37,9 +61,16 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
             }
             "face" => {
                 require_corners(element)?;
+                if detail >= Detail::Attributes {
+                    let parser = Parser::<Face>::new();
+                    let faces =
+                        parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
+                    face_values.add(element, &faces, &mut soup)?;
+                    continue;
+                }
                 let parser = Parser::<Corners>::new();
                 let faces = parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
-                add_faces(&mut soup, &faces)?;
+                add_faces(&mut soup, faces.iter().map(|face| &face.0[..]))?;
             }
             "tristrips" => {
                 require_corners(element)?;
@@ -57,7 +88,14 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
             }
         }
     }
-    Ok(soup)
+    let mut found = MeshAttributes::default();
+    if detail >= Detail::Attributes {
+        attributes::collect(&header, &vertices, face_values, &soup, &mut found);
+    }
+    if detail >= Detail::Textures {
+        attributes::texture(&header, &soup, &mut found, resolver)?;
+    }
+    Ok(Model { soup, attributes: found })
 }
 
 /// The header, and where the data starts.
@@ -136,14 +174,17 @@ fn require_corners(element: &ElementDef) -> Result<(), ReadError> {
     require(element, &[name], |kind| matches!(kind, PropertyType::List(..)))
 }
 
-fn add_faces(soup: &mut PolygonSoup, faces: &[Corners]) -> Result<(), ReadError> {
+fn add_faces<'a>(
+    soup: &mut PolygonSoup,
+    faces: impl ExactSizeIterator<Item = &'a [i64]>,
+) -> Result<(), ReadError> {
     soup.ends.reserve(faces.len());
     soup.corners.reserve(faces.len().saturating_mul(3));
-    for (index, face) in faces.iter().enumerate() {
-        if let Some(&corner) = face.0.iter().find(|&&corner| u32::try_from(corner).is_err()) {
+    for (index, face) in faces.enumerate() {
+        if let Some(&corner) = face.iter().find(|&&corner| u32::try_from(corner).is_err()) {
             return Err(malformed(Place::Item("face", index), format!("a corner is vertex {corner}")));
         }
-        push_polygon(soup, face.0.iter().map(|&corner| corner as u32), MeshFormat::Ply)?;
+        push_polygon(soup, face.iter().map(|&corner| corner as u32), MeshFormat::Ply)?;
     }
     Ok(())
 }

@@ -5,8 +5,41 @@ use std::io::{Cursor, ErrorKind};
 use glam::DVec3;
 
 use crate::io::detect::{MeshFormat, binary_stl_count, binary_stl_size};
-use crate::io::read::{Place, ReadError, brief, push_polygon, text};
+use crate::io::read::{Detail, Model, Place, ReadError, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
+
+/// Reads an STL file with the names of its solids as parts, which binary files do not have.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_model(bytes: &[u8], detail: Detail) -> Result<Model, ReadError> {
+    let mut model = Model::from(read(bytes)?);
+    if detail >= Detail::Attributes && is_ascii(bytes) {
+        let (mut polygon, mut name) = (0, None);
+        for line in text(bytes).lines() {
+            let line = line.trim();
+            let (keyword, rest) = line.split_once([' ', '\t']).unwrap_or((line, ""));
+            match keyword.to_ascii_lowercase().as_str() {
+                "solid" => {
+                    let rest = rest.trim();
+                    name = (!rest.is_empty()).then(|| model.attributes.parts.push(rest));
+                }
+                "facet" => {
+                    model.attributes.parts.set(polygon..polygon + 1, name);
+                    polygon += 1;
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(model)
+}
+
+/// Whether a file is text.
+fn is_ascii(bytes: &[u8]) -> bool {
+    let is_whole = binary_stl_count(bytes).map(binary_stl_size) == Some(bytes.len() as u64);
+    !is_whole && text(&bytes[..bytes.len().min(512)]).trim_start().to_ascii_lowercase().starts_with("solid")
+}
 
 /// Reads an STL file. Every triangle gets its own three vertices: checking the soup welds them. Binary files that
 /// start with `solid` are known by their length, ASCII files may hold several solids, in capitals too.
@@ -15,10 +48,8 @@ use crate::mesh::PolygonSoup;
 /// [`ReadError`]: with the triangle.
 pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
     let size = binary_stl_count(bytes).map(binary_stl_size);
-    let is_whole = size == Some(bytes.len() as u64);
-    let is_text = text(&bytes[..bytes.len().min(512)]).trim_start().to_ascii_lowercase().starts_with("solid");
     let mut soup = PolygonSoup::default();
-    if is_text && !is_whole {
+    if is_ascii(bytes) {
         for solid in solids(&text(bytes)) {
             append(&mut soup, solid.as_bytes())?;
         }

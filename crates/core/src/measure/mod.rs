@@ -6,6 +6,7 @@
 //! is cancelled returns early with a report that is not to be used.
 
 mod ball;
+mod cells;
 mod component;
 pub mod decomposition;
 mod energy;
@@ -27,6 +28,7 @@ mod testmesh;
 mod tests;
 
 pub use ball::{Ball, BallOptions, BallReport, Balls, ball};
+pub use cells::cell_areas;
 pub use component::{ComponentReport, ComponentShare, components};
 pub use energy::{EnergyOptions, EnergyPlanes, EnergyReport, energy};
 pub use half_space::{HalfSpace, HalfSpaceOptions, HalfSpaceReport, HalfSpaces, half_space};

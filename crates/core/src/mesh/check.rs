@@ -224,9 +224,11 @@ impl Faces {
                     continue;
                 }
                 self.corners.push(face);
-                let source =
-                    FaceSource { polygon: PolygonId::new(polygon), corners: triangle.map(|i| places[i]) };
-                self.sources.push(source);
+                self.sources.push(FaceSource {
+                    polygon: PolygonId::new(polygon),
+                    corners: triangle.map(|i| places[i]),
+                    turned: false,
+                });
             }
             if self.corners.len() > limit {
                 return Err(MeshError::TooMany { what: "triangles", count: self.corners.len(), limit });
@@ -340,6 +342,7 @@ fn turn(topology: &Topology, sources: &mut [FaceSource], turned: &[bool]) -> Top
     for ((corners, source), _) in corners.iter_mut().zip(sources).zip(turned).filter(|(_, turned)| **turned) {
         corners.swap(1, 2);
         source.corners.swap(1, 2);
+        source.turned = true;
     }
     Topology::new(topology.vertex_count(), corners).0
 }

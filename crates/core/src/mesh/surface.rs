@@ -14,6 +14,8 @@ pub struct FaceSource {
     pub polygon: PolygonId,
     /// For each corner of the triangle its place in [`PolygonSoup::corners`](crate::PolygonSoup::corners).
     pub corners: [u32; 3],
+    /// Whether the triangle is wound against its polygon, because its component was turned outward.
+    pub turned: bool,
 }
 
 /// A checked triangle surface; made by [`SurfaceMesh::from_soup`]. Every coordinate is finite and every face has

@@ -1,7 +1,6 @@
 //! Numbers out of buffers, checked. Own code: the library's iterators panic when a view is too short, and take
 //! positions for single precision where `KHR_mesh_quantization` stores small integers.
 
-use glam::DVec3;
 use gltf::Accessor;
 use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{DataType, Dimensions};
@@ -12,24 +11,29 @@ use crate::io::gltf::buffers::Buffers;
 /// An accessor without a view is all zeros, however large: no file needs more of them.
 const MOST_ZEROS: usize = 1 << 24;
 
-/// The vectors of an accessor of positions, or what is wrong with it.
-pub(super) fn positions(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Vec<DVec3>, String> {
+/// The vectors of `N` numbers of an accessor of `what`, or what is wrong with it.
+pub(super) fn vectors<const N: usize>(
+    accessor: &Accessor<'_>,
+    what: &str,
+    buffers: &Buffers,
+) -> Result<Vec<[f64; N]>, String> {
     let error = |problem: &str| format!("accessor {}: {problem}", accessor.index());
-    if accessor.dimensions() != Dimensions::Vec3 {
-        return Err(error("positions must be vectors of three numbers"));
+    let is_vector = !matches!(accessor.dimensions(), Dimensions::Mat2 | Dimensions::Mat3 | Dimensions::Mat4);
+    if accessor.dimensions().multiplicity() != N || !is_vector {
+        return Err(error(&format!("{what} must be vectors of {N} numbers")));
     }
     let kind = accessor.data_type();
     let vector = |bytes: &[u8]| {
         let (size, normalized) = (kind.size(), accessor.normalized());
-        DVec3::from_array([0, 1, 2].map(|axis| component(&bytes[axis * size..][..size], kind, normalized)))
+        std::array::from_fn(|axis| component(&bytes[axis * size..][..size], kind, normalized))
     };
     let outside = || error("it reaches beyond its buffer");
-    let mut positions: Vec<DVec3> = match accessor.view() {
-        Some(view) => items(&view, accessor.offset(), accessor.count(), 3 * kind.size(), buffers)
+    let mut vectors: Vec<[f64; N]> = match accessor.view() {
+        Some(view) => items(&view, accessor.offset(), accessor.count(), N * kind.size(), buffers)
             .ok_or_else(outside)?
             .map(vector)
             .collect(),
-        None if accessor.count() <= MOST_ZEROS => vec![DVec3::ZERO; accessor.count()],
+        None if accessor.count() <= MOST_ZEROS => vec![[0.0; N]; accessor.count()],
         None => return Err(error("it has no data")),
     };
     if let Some(sparse) = accessor.sparse() {
@@ -41,14 +45,14 @@ pub(super) fn positions(accessor: &Accessor<'_>, buffers: &Buffers) -> Result<Ve
         };
         let places =
             items(&indices.view(), indices.offset(), sparse.count(), size, buffers).ok_or_else(outside)?;
-        let values = items(&values.view(), values.offset(), sparse.count(), 3 * kind.size(), buffers)
+        let values = items(&values.view(), values.offset(), sparse.count(), N * kind.size(), buffers)
             .ok_or_else(outside)?;
         for (place, value) in places.zip(values) {
             let place = unsigned(place) as usize;
-            *positions.get_mut(place).ok_or_else(|| error("a sparse index is too large"))? = vector(value);
+            *vectors.get_mut(place).ok_or_else(|| error("a sparse index is too large"))? = vector(value);
         }
     }
-    Ok(positions)
+    Ok(vectors)
 }
 
 /// The numbers of an accessor of indices, or what is wrong with it.

@@ -50,6 +50,12 @@ impl Buffers {
         Ok(Self(buffers))
     }
 
+    /// Some bytes of a buffer; `None` if there are none such.
+    pub(super) fn bytes(&self, buffer: usize, offset: u64, length: u64) -> Option<&[u8]> {
+        let start = usize::try_from(offset).ok()?;
+        self.0.get(buffer)?.get(start..start.checked_add(usize::try_from(length).ok()?)?)
+    }
+
     /// The bytes of a view; `None` if it reaches beyond its buffer.
     pub(super) fn view(&self, view: &View<'_>) -> Option<&[u8]> {
         let end = view.offset().checked_add(view.length())?;
@@ -58,7 +64,7 @@ impl Buffers {
 }
 
 /// What stands behind `data:`.
-fn embedded(data: &str) -> Option<Vec<u8>> {
+pub(super) fn embedded(data: &str) -> Option<Vec<u8>> {
     // Some exporters leave out the padding.
     let lenient = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
     let (_, base64) = data.split_once(";base64,")?;
@@ -66,7 +72,7 @@ fn embedded(data: &str) -> Option<Vec<u8>> {
 }
 
 /// `%20` and the like replaced by the bytes they stand for; left alone if that makes no text.
-fn percent_decoded(uri: &str) -> String {
+pub(super) fn percent_decoded(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
     while let [first, tail @ ..] = rest {

@@ -5,40 +5,44 @@ use std::io;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::io::points::{PointPlace, PointRow, Points, PointsError};
-use crate::sample::Origin;
+use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError};
 
-/// A point as it is written.
-#[derive(Serialize)]
-struct Row {
-    position: [f64; 3],
-    normal: [f64; 3],
-    face: u32,
-    barycentric: [f64; 3],
-    strip: u32,
-    place: [f64; 2],
-    origin: Origin,
-}
-
-pub(super) fn write(rows: &[PointRow], out: &mut dyn io::Write) -> io::Result<()> {
+pub(super) fn write(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
     // A line for each point, so that people and `diff` can read the file.
+    let count = fields.first().map_or(0, Field::point_count);
     let mut before = "[\n";
-    for row in rows {
+    for point in 0..count {
         out.write_all(before.as_bytes())?;
         before = ",\n";
-        let sample = &row.sample;
-        let row = Row {
-            position: row.position.to_array(),
-            normal: row.normal.to_array(),
-            face: sample.point.face.0,
-            barycentric: sample.point.barycentric,
-            strip: sample.strip.0,
-            place: sample.place.to_array(),
-            origin: sample.origin,
-        };
-        serde_json::to_writer(&mut *out, &row)?;
+        for (index, field) in fields.iter().enumerate() {
+            out.write_all(if index == 0 { b"{" } else { b"," })?;
+            serde_json::to_writer(&mut *out, &field.key)?;
+            out.write_all(b":")?;
+            let width = field.columns.len();
+            let place = point * width..(point + 1) * width;
+            match &field.data {
+                FieldData::Real(values, _) => write_list(&values[place], out)?,
+                FieldData::Id(values) => write_list(&values[place], out)?,
+                FieldData::Byte(values) => write_list(&values[place], out)?,
+                FieldData::Name { names, ids } => {
+                    let name = ids[point].and_then(|id| names.get(id as usize));
+                    serde_json::to_writer(&mut *out, &name)?;
+                }
+                FieldData::Origin(origins) => serde_json::to_writer(&mut *out, &origins[point])?,
+            }
+        }
+        out.write_all(b"}")?;
     }
-    out.write_all(if rows.is_empty() { b"[]\n" } else { b"\n]\n" })
+    out.write_all(if count == 0 { b"[]\n" } else { b"\n]\n" })
+}
+
+/// One value as it is, several as a list; numbers that are none are null.
+fn write_list<T: Serialize>(values: &[T], mut out: &mut dyn io::Write) -> io::Result<()> {
+    match values {
+        [value] => serde_json::to_writer(&mut out, value)?,
+        values => serde_json::to_writer(&mut out, values)?,
+    }
+    Ok(())
 }
 
 /// A point as it may be read.

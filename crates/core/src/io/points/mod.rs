@@ -1,9 +1,16 @@
 //! Points out and in, one file a format.
 
+mod attribute;
+mod field;
+mod glb;
 mod json;
 mod npy;
+mod npz;
 mod ply;
 mod text;
+
+pub use attribute::{Attribute, AttributeError, gather};
+pub use field::{Field, FieldData, Precision};
 
 use std::fmt;
 use std::io;
@@ -28,16 +35,30 @@ pub enum PointFormat {
     Csv,
     /// NumPy's format: float64, n x 3, C order; positions only.
     Npy,
+    /// NumPy's archive: an array a field, named as in JSON; names as indices (-1: none) with an array `KEY_names`.
+    Npz,
     /// A list with an object for each point: `position`, `normal`, `face`, `barycentric`, `strip`, `place`, `origin`.
     Json,
-    /// Wavefront OBJ: `v` and `vn` lines, no elements.
+    /// Wavefront OBJ: `v` (with sRGB colours from 0 to 1), `vt` and `vn` lines, no elements.
     Obj,
+    /// Binary glTF 2.0: one mesh of points in single precision, with `POSITION`, `NORMAL`, `TEXCOORD_0` (origin at the
+    /// upper left), `COLOR_0` (linear), and the other fields as `_KEY` in capitals; names are listed in `extras`.
+    Glb,
 }
 
 impl PointFormat {
     /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::Ply, Self::PlyAscii, Self::Xyz, Self::Csv, Self::Npy, Self::Json, Self::Obj];
+    pub const ALL: [Self; 9] = [
+        Self::Ply,
+        Self::PlyAscii,
+        Self::Xyz,
+        Self::Csv,
+        Self::Npy,
+        Self::Npz,
+        Self::Json,
+        Self::Obj,
+        Self::Glb,
+    ];
 
     /// Its name: what [`from_name`](Self::from_name) takes.
     pub fn name(self) -> &'static str {
@@ -47,8 +68,10 @@ impl PointFormat {
             Self::Xyz => "xyz",
             Self::Csv => "csv",
             Self::Npy => "npy",
+            Self::Npz => "npz",
             Self::Json => "json",
             Self::Obj => "obj",
+            Self::Glb => "glb",
         }
     }
 
@@ -94,20 +117,66 @@ impl PointRow {
     }
 }
 
-/// Writes points. Numbers in text are the shortest that read back as the same doubles.
+/// Writes points with what [`COLUMNS`] name, as far as the format holds it (XYZ and NPY positions, OBJ positions and
+/// normals). Numbers in text are the shortest that read back as the same doubles.
 ///
 /// # Errors
-/// Only those of `out`: a `Vec<u8>` has none.
+/// Those of `out`, and for GLB a position beyond single precision: [`io::ErrorKind::InvalidInput`].
 pub fn write_points(format: PointFormat, rows: &[PointRow], out: &mut dyn io::Write) -> io::Result<()> {
-    match format {
-        PointFormat::Ply => ply::write(rows, ply::BINARY, out),
-        PointFormat::PlyAscii => ply::write(rows, ply::ASCII, out),
-        PointFormat::Xyz => text::write_xyz(rows, out),
-        PointFormat::Csv => text::write_csv(rows, out),
-        PointFormat::Npy => npy::write(rows, out),
-        PointFormat::Json => json::write(rows, out),
-        PointFormat::Obj => text::write_obj(rows, out),
+    let mut fields = default_fields(rows);
+    if format == PointFormat::Xyz {
+        fields.truncate(1);
     }
+    write_fields(format, &fields, out)
+}
+
+/// Writes fields, the first of which is the position, as far as the format holds them: NPY positions, OBJ positions,
+/// normals, texture coordinates and colours, XYZ numbers (with a first line of names, after `#`, if there are more than
+/// positions), the others all.
+///
+/// # Errors
+/// As [`write_points`].
+pub fn write_fields(format: PointFormat, fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
+    match format {
+        PointFormat::Ply => ply::write(fields, ply::BINARY, out),
+        PointFormat::PlyAscii => ply::write(fields, ply::ASCII, out),
+        PointFormat::Xyz => text::write_xyz(fields, out),
+        PointFormat::Csv => text::write_csv(fields, out),
+        PointFormat::Npy => npy::write(fields, out),
+        PointFormat::Npz => npz::write(fields, out),
+        PointFormat::Json => json::write(fields, out),
+        PointFormat::Obj => text::write_obj(fields, out),
+        PointFormat::Glb => glb::write(fields, out),
+    }
+}
+
+/// The fields of [`COLUMNS`].
+fn default_fields(rows: &[PointRow]) -> Vec<Field> {
+    let reals = |key, columns: &[&str], precision, values: Vec<f64>| {
+        Field::new(key, columns, FieldData::Real(values, precision))
+    };
+    let each = |values: fn(&PointRow) -> [f64; 3]| rows.iter().flat_map(values).collect();
+    let ids =
+        |key, id: fn(&PointRow) -> u32| Field::new(key, &[key], FieldData::Id(rows.iter().map(id).collect()));
+    let double = Precision::Double;
+    vec![
+        reals("position", &COLUMNS[..3], double, each(|r| r.position.to_array())),
+        reals("normal", &COLUMNS[3..6], Precision::Single, each(|r| r.normal.to_array())),
+        ids("face", |r| r.sample.point.face.0),
+        reals("barycentric", &COLUMNS[7..10], double, each(|r| r.sample.point.barycentric)),
+        ids("strip", |r| r.sample.strip.0),
+        reals(
+            "place",
+            &COLUMNS[11..13],
+            double,
+            rows.iter().flat_map(|r| r.sample.place.to_array()).collect(),
+        ),
+        Field::new(
+            "origin",
+            &COLUMNS[13..],
+            FieldData::Origin(rows.iter().map(|r| r.sample.origin).collect()),
+        ),
+    ]
 }
 
 /// Where in a point file something is wrong.
@@ -137,7 +206,9 @@ impl fmt::Display for PointPlace {
 #[non_exhaustive]
 pub enum PointsError {
     /// Neither content nor name tell a format.
-    #[error("{name:?} is not in a known point format: the formats are ply, xyz, csv, npy, json and obj")]
+    #[error(
+        "{name:?} is not in a known point format: the formats are ply, xyz, csv, npy, npz, json, obj and glb"
+    )]
     UnknownFormat {
         /// The name.
         name: String,
@@ -170,14 +241,16 @@ pub enum PointsError {
     },
 }
 
-/// Reads the positions of points; other columns are skipped. PLY and NPY are told by their content, the others by `name`:
+/// Reads the positions of points; other columns are skipped. PLY, NPY, NPZ and GLB are told by their content, the others by `name`:
 /// - PLY: x, y, z of the element `vertex`, any scalar type, all three encodings;
 /// - XYZ: the first three numbers of each line, between spaces, commas or semicolons; `#` and `//` start comments; a first
 ///   line with the count alone, as in PTS files, is skipped;
 /// - CSV: the columns x, y, z of the first line, or the first three columns;
 /// - NPY: float32 or float64, n rows of at least 3, either byte order, C or Fortran order;
 /// - JSON: a list of points: `[x, y, z]`, `{"position": [x, y, z]}` or `{"x": x, "y": y, "z": z}`;
-/// - OBJ: the `v` lines.
+/// - NPZ: the array `position`, `positions`, `points`, `xyz` or `vertices`, as NPY;
+/// - OBJ: the `v` lines;
+/// - GLB: the positions of all meshes, whatever they are made of, placed by their nodes.
 ///
 /// # Errors
 /// [`PointsError`]. What a head claims is never allocated before the bytes are there.
@@ -186,6 +259,10 @@ pub fn read_points(bytes: &[u8], name: &str) -> Result<Vec<DVec3>, PointsError> 
         PointFormat::Ply
     } else if bytes.starts_with(npy::MAGIC) {
         PointFormat::Npy
+    } else if bytes.starts_with(b"PK\x03\x04") {
+        PointFormat::Npz
+    } else if bytes.starts_with(b"glTF") {
+        PointFormat::Glb
     } else {
         PointFormat::from_name(name).ok_or_else(|| PointsError::UnknownFormat { name: name.to_owned() })?
     };
@@ -195,8 +272,10 @@ pub fn read_points(bytes: &[u8], name: &str) -> Result<Vec<DVec3>, PointsError> 
         PointFormat::Xyz => text::read_xyz(bytes, &mut points),
         PointFormat::Csv => text::read_csv(bytes, &mut points),
         PointFormat::Npy => npy::read(bytes, &mut points),
+        PointFormat::Npz => npz::read(bytes, &mut points),
         PointFormat::Json => json::read(bytes, &mut points),
         PointFormat::Obj => text::read_obj(bytes, &mut points),
+        PointFormat::Glb => glb::read(bytes, &mut points),
     }?;
     if points.positions.is_empty() { Err(PointsError::Empty { format }) } else { Ok(points.positions) }
 }

@@ -5,24 +5,36 @@ use std::io;
 
 use glam::DVec3;
 
-use crate::io::points::{PointPlace, PointRow, Points, PointsError};
+use crate::io::points::{Field, PointPlace, Points, PointsError, field};
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
-pub(super) fn write(rows: &[PointRow], out: &mut dyn io::Write) -> io::Result<()> {
-    let head = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, 3), }}", rows.len());
+pub(super) fn write(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
+    let positions = field::reals(fields, "position", 3).unwrap_or_default();
+    write_head("<f8", &[positions.len() / 3, 3], out)?;
+    for x in positions {
+        out.write_all(&x.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+/// What stands before the numbers of an array.
+pub(super) fn write_head(descr: &str, shape: &[usize], out: &mut dyn io::Write) -> io::Result<()> {
+    let mut sizes: Vec<String> = shape.iter().map(usize::to_string).collect();
+    if let [_] = shape {
+        sizes.push(String::new());
+    }
+    let sizes = sizes.join(", ");
+    let head = format!(
+        "{{'descr': '{descr}', 'fortran_order': False, 'shape': ({}), }}",
+        sizes.trim_end_matches(' ')
+    );
     // Magic, version, length of the head and head together fill a multiple of 64 bytes and end with a new line.
     let length = (10 + head.len() + 1).next_multiple_of(64) - 10;
     out.write_all(MAGIC)?;
     out.write_all(&[1, 0])?;
     out.write_all(&(length as u16).to_le_bytes())?;
-    writeln!(out, "{head:width$}", width = length - 1)?;
-    for row in rows {
-        for x in row.position.to_array() {
-            out.write_all(&x.to_le_bytes())?;
-        }
-    }
-    Ok(())
+    writeln!(out, "{head:width$}", width = length - 1)
 }
 
 pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError> {

@@ -1,5 +1,6 @@
 //! Points as PLY.
 
+use std::collections::BTreeMap;
 use std::io;
 
 use glam::DVec3;
@@ -10,34 +11,51 @@ use ply_rs_bw::ply::{
 };
 use ply_rs_bw::writer::Writer;
 
-use crate::io::points::{COLUMNS, PointPlace, PointRow, Points, PointsError};
-use crate::sample::Origin;
+use crate::io::points::field::origin_number;
+use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError, Precision};
 
 pub(super) const BINARY: Encoding = Encoding::BinaryLittleEndian;
 pub(super) const ASCII: Encoding = Encoding::Ascii;
 
-pub(super) fn write(rows: &[PointRow], encoding: Encoding, mut out: &mut dyn io::Write) -> io::Result<()> {
+pub(super) fn write(fields: &[Field], encoding: Encoding, mut out: &mut dyn io::Write) -> io::Result<()> {
     let mut vertex = ElementDef::new("vertex".to_owned());
-    vertex.count = rows.len();
-    for name in COLUMNS {
-        let scalar = match name {
-            "nx" | "ny" | "nz" => ScalarType::Float,
-            // Some readers know no unsigned 32-bit numbers; faces and strips are below 2^31.
-            "face" | "strip" => ScalarType::Int,
-            "origin" => ScalarType::UChar,
-            _ => ScalarType::Double,
-        };
-        let property = PropertyDef::new(name.to_owned(), PropertyType::Scalar(scalar));
-        vertex.properties.insert(name.to_owned(), property);
-    }
+    vertex.count = fields.first().map_or(0, Field::point_count);
     let mut header = Header::new();
     header.encoding = encoding;
-    header.comments.push("origin: 0 wrapped, 1 projected, 2 equalized".to_owned());
+    let mut columns = BTreeMap::new();
+    for field in fields {
+        let scalar = match &field.data {
+            FieldData::Real(_, Precision::Double) => ScalarType::Double,
+            FieldData::Real(_, Precision::Single) => ScalarType::Float,
+            // Some readers know no unsigned 32-bit numbers; faces and strips are below 2^31.
+            FieldData::Id(_) | FieldData::Name { .. } => ScalarType::Int,
+            FieldData::Byte(_) | FieldData::Origin(_) => ScalarType::UChar,
+        };
+        if let FieldData::Origin(_) = field.data {
+            header.comments.push("origin: 0 wrapped, 1 projected, 2 equalized".to_owned());
+        }
+        if let FieldData::Name { names, .. } = &field.data {
+            for (index, name) in names.iter().enumerate() {
+                header.comments.push(format!("{} {index} {}", field.key, one_line(name)));
+            }
+        }
+        for (column, name) in field.columns.iter().enumerate() {
+            // What other programs look for.
+            let name = match (&*field.key, &**name) {
+                ("uv", "u") => "s".to_owned(),
+                ("uv", "v") => "t".to_owned(),
+                _ => one_line(name).replace(' ', "_"),
+            };
+            let property = PropertyDef::new(name.clone(), PropertyType::Scalar(scalar.clone()));
+            vertex.properties.insert(name.clone(), property);
+            columns.insert(name, (field, column));
+        }
+    }
     header.elements.insert(vertex.name.clone(), vertex.clone());
     let writer = Writer::<Row<'_>>::new();
     writer.write_header(&mut out, &header)?;
-    for row in rows {
-        let row = Row(Some(row));
+    for point in 0..vertex.count {
+        let row = Row { columns: Some(&columns), point };
         if encoding == ASCII {
             writer.write_ascii_element(&mut out, &row, &vertex)?;
         } else {
@@ -47,56 +65,58 @@ pub(super) fn write(rows: &[PointRow], encoding: Encoding, mut out: &mut dyn io:
     Ok(())
 }
 
-/// A row to be written; the library's trait asks for an empty one too.
-struct Row<'a>(Option<&'a PointRow>);
+/// A name that a header of ASCII lines can hold.
+fn one_line(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '?' }).collect()
+}
+
+/// A point to be written; the library's trait asks for an empty one too.
+struct Row<'a> {
+    columns: Option<&'a BTreeMap<String, (&'a Field, usize)>>,
+    point: usize,
+}
+
+impl<'a> Row<'a> {
+    /// The values of a property, and the place of this point's among them.
+    fn find(&self, name: &str) -> Option<(&'a FieldData, usize)> {
+        let (field, column) = self.columns?.get(name)?;
+        Some((&field.data, self.point * field.columns.len() + column))
+    }
+}
 
 impl PropertyAccess for Row<'_> {
     fn new() -> Self {
-        Self(None)
+        Self { columns: None, point: 0 }
     }
 
     fn get_double(&self, name: &str) -> Option<f64> {
-        let row = self.0?;
-        let [b0, b1, b2] = row.sample.point.barycentric;
-        Some(match name {
-            "x" => row.position.x,
-            "y" => row.position.y,
-            "z" => row.position.z,
-            "b0" => b0,
-            "b1" => b1,
-            "b2" => b2,
-            "place_x" => row.sample.place.x,
-            "place_y" => row.sample.place.y,
-            _ => return None,
-        })
+        match self.find(name)? {
+            (FieldData::Real(values, _), place) => values.get(place).copied(),
+            _ => None,
+        }
     }
 
     fn get_float(&self, name: &str) -> Option<f32> {
-        let normal = self.0?.normal.as_vec3();
-        Some(match name {
-            "nx" => normal.x,
-            "ny" => normal.y,
-            "nz" => normal.z,
-            _ => return None,
-        })
+        self.get_double(name).map(|value| value as f32)
     }
 
     fn get_int(&self, name: &str) -> Option<i32> {
-        let sample = &self.0?.sample;
-        let id = match name {
-            "face" => sample.point.face.0,
-            "strip" => sample.strip.0,
-            _ => return None,
-        };
-        i32::try_from(id).ok()
+        match self.find(name)? {
+            (FieldData::Id(ids), place) => i32::try_from(*ids.get(place)?).ok(),
+            // -1 for none, as is the habit.
+            (FieldData::Name { ids, .. }, place) => {
+                ids.get(place)?.map_or(Some(-1), |id| i32::try_from(id).ok())
+            }
+            _ => None,
+        }
     }
 
-    fn get_uchar(&self, _: &str) -> Option<u8> {
-        Some(match self.0?.sample.origin {
-            Origin::Wrapped => 0,
-            Origin::Projected => 1,
-            Origin::Equalized => 2,
-        })
+    fn get_uchar(&self, name: &str) -> Option<u8> {
+        match self.find(name)? {
+            (FieldData::Byte(values), place) => values.get(place).copied(),
+            (FieldData::Origin(origins), place) => origins.get(place).copied().map(origin_number),
+            _ => None,
+        }
     }
 }
 

@@ -84,6 +84,133 @@ fn names() {
     assert_eq!(PointFormat::from_name("points.ply.gz"), None);
 }
 
+/// Two points with every kind of field.
+fn fields() -> Vec<Field> {
+    let real = |key: &str, columns: &[&str], values: &[f64], precision| {
+        Field::new(key, columns, FieldData::Real(values.to_vec(), precision))
+    };
+    let (single, double) = (Precision::Single, Precision::Double);
+    vec![
+        real("position", &["x", "y", "z"], &[1.0, 2.0, 3.0, -4.0, 0.5, 60.0], double),
+        real("normal", &["nx", "ny", "nz"], &[0.0, 0.0, 1.0, 1.0, 0.0, 0.0], single),
+        real("uv", &["u", "v"], &[0.25, 0.75, f64::NAN, f64::NAN], single),
+        Field::new(
+            "color",
+            &["red", "green", "blue", "alpha"],
+            FieldData::Byte(vec![255, 0, 188, 255, 0, 0, 0, 0]),
+        ),
+        Field::new(
+            "material",
+            &["material"],
+            FieldData::Name { names: vec!["a, \"b\"".into(), "caf\u{e9}".into()], ids: vec![Some(1), None] },
+        ),
+        Field::new("face", &["face"], FieldData::Id(vec![7, 16_777_215])),
+        Field::new("origin", &["origin"], FieldData::Origin(vec![Origin::Wrapped, Origin::Equalized])),
+        real("cell_area", &["cell_area"], &[0.1, 1e-7], double),
+    ]
+}
+
+fn fields_as(format: PointFormat) -> Vec<u8> {
+    let mut out = Vec::new();
+    write_fields(format, &fields(), &mut out).expect("memory takes every byte");
+    out
+}
+
+#[test]
+fn fields_in_text() {
+    let text = |format| String::from_utf8(fields_as(format)).expect("text");
+    assert_eq!(
+        text(PointFormat::Csv),
+        "x,y,z,nx,ny,nz,u,v,red,green,blue,alpha,material,face,origin,cell_area\n\
+         1.0,2.0,3.0,0.0,0.0,1.0,0.25,0.75,255,0,188,255,caf\u{e9},7,wrapped,0.1\n\
+         -4.0,0.5,60.0,1.0,0.0,0.0,,,0,0,0,0,,16777215,equalized,1e-7\n"
+    );
+    assert_eq!(
+        text(PointFormat::Json),
+        "[\n{\"position\":[1.0,2.0,3.0],\"normal\":[0.0,0.0,1.0],\"uv\":[0.25,0.75],\"color\":[255,0,188,255],\
+         \"material\":\"caf\u{e9}\",\"face\":7,\"origin\":\"wrapped\",\"cell_area\":0.1},\n\
+         {\"position\":[-4.0,0.5,60.0],\"normal\":[1.0,0.0,0.0],\"uv\":[null,null],\"color\":[0,0,0,0],\
+         \"material\":null,\"face\":16777215,\"origin\":\"equalized\",\"cell_area\":1e-7}\n]\n"
+    );
+    assert_eq!(
+        text(PointFormat::Xyz),
+        "# x y z nx ny nz u v red green blue alpha face cell_area\n\
+         1.0 2.0 3.0 0.0 0.0 1.0 0.25 0.75 255 0 188 255 7 0.1\n\
+         -4.0 0.5 60.0 1.0 0.0 0.0 nan nan 0 0 0 0 16777215 1e-7\n"
+    );
+    assert_eq!(
+        text(PointFormat::Obj),
+        "v 1.0 2.0 3.0 1.0 0.0 0.7372549019607844\nv -4.0 0.5 60.0 0.0 0.0 0.0\nvt 0.25 0.75\nvt 0.0 0.0\n\
+         vn 0.0 0.0 1.0\nvn 1.0 0.0 0.0\n"
+    );
+    let ply = text(PointFormat::PlyAscii);
+    for line in [
+        "comment material 0 a, \"b\"\ncomment material 1 caf?\n",
+        "property float s\nproperty float t\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n",
+        "property int material\nproperty int face\nproperty uchar origin\nproperty double cell_area\nend_header\n",
+        "\n1 2 3 0 0 1 0.25 0.75 255 0 188 255 1 7 0 0.1\n-4 0.5 60 1 0 0 NaN NaN 0 0 0 0 -1 16777215 2 0.0000001\n",
+    ] {
+        assert!(ply.contains(line), "no {line:?} in {ply}");
+    }
+    // The library that reads PLY takes no NaN in text.
+    for format in PointFormat::ALL.into_iter().filter(|&format| format != PointFormat::PlyAscii) {
+        assert_eq!(read_points(&fields_as(format), format.name()), Ok(TWO.to_vec()), "{format}");
+    }
+}
+
+#[test]
+fn fields_in_an_npz_archive() {
+    let bytes = fields_as(PointFormat::Npz);
+    let mut archive = zip::ZipArchive::new(io::Cursor::new(&bytes[..])).expect("an archive");
+    let mut array = |name: &str| {
+        let mut bytes = Vec::new();
+        io::Read::read_to_end(&mut archive.by_name(name).expect(name), &mut bytes).expect("an array");
+        let data = bytes.iter().position(|&b| b == b'\n').expect("a head") + 1;
+        assert_eq!(data % 64, 0);
+        (String::from_utf8_lossy(&bytes[10..data]).trim_end().to_owned(), bytes[data..].to_vec())
+    };
+    let head = |descr: &str, shape: &str| {
+        format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}")
+    };
+    assert_eq!(array("position.npy").0, head("<f8", "(2, 3)"));
+    assert_eq!(array("normal.npy").0, head("<f4", "(2, 3)"));
+    assert_eq!(array("color.npy"), (head("|u1", "(2, 4)"), vec![255, 0, 188, 255, 0, 0, 0, 0]));
+    assert_eq!(array("material.npy"), (head("<i4", "(2,)"), [1i32, -1].map(i32::to_le_bytes).concat()));
+    let (names, letters) = array("material_names.npy");
+    assert_eq!((names, letters.len()), (head("<U6", "(2,)"), 48));
+    assert_eq!(letters[36..40], 0xe9u32.to_le_bytes());
+    assert_eq!(array("face.npy").1, [7u32, 16_777_215].map(u32::to_le_bytes).concat());
+    assert_eq!(array("origin_names.npy").0, head("<U9", "(3,)"));
+    assert_eq!(bytes, fields_as(PointFormat::Npz), "no clock in it");
+}
+
+#[test]
+fn fields_in_glb() {
+    let bytes = fields_as(PointFormat::Glb);
+    assert_eq!(bytes[8..12], (bytes.len() as u32).to_le_bytes());
+    let gltf = gltf::Gltf::from_slice(&bytes).expect("valid glTF");
+    let primitive = gltf.meshes().next().expect("a mesh").primitives().next().expect("a primitive");
+    assert_eq!(primitive.mode(), gltf::mesh::Mode::Points);
+    let blob = gltf.blob.as_deref().expect("a chunk");
+    let numbers = |semantic: gltf::Semantic| -> Vec<f32> {
+        let accessor = primitive.get(&semantic).unwrap_or_else(|| panic!("{semantic:?}"));
+        assert_eq!(accessor.count(), 2);
+        let view = accessor.view().expect("a view");
+        let bytes = &blob[view.offset()..view.offset() + view.length()];
+        bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+    };
+    use gltf::Semantic::{Colors, Extras, Normals, Positions, TexCoords};
+    assert_eq!(numbers(Positions), [1.0, 2.0, 3.0, -4.0, 0.5, 60.0]);
+    assert_eq!(numbers(Normals), [0.0, 0.0, 1.0, 1.0, 0.0, 0.0]);
+    assert_eq!(numbers(TexCoords(0)), [0.25, 0.25, 0.0, 0.0]);
+    assert_eq!(numbers(Extras("FACE".into())), [7.0, 16_777_215.0]);
+    assert_eq!(numbers(Extras("MATERIAL".into())), [1.0, -1.0]);
+    let color = numbers(Colors(0));
+    assert!((color[2] - 0.502_886_5).abs() < 1e-6 && color[..2] == [1.0, 0.0], "{color:?}");
+    let bounds = primitive.bounding_box();
+    assert_eq!((bounds.min, bounds.max), ([-4.0, 0.5, 3.0], [1.0, 2.0, 60.0]));
+}
+
 fn read(name: &str, text: &str) -> Result<Vec<DVec3>, String> {
     read_points(text.as_bytes(), name).map_err(|error| error.to_string())
 }
@@ -172,7 +299,7 @@ fn broken_files_tell_where() {
         (
             "a",
             "1 2 3",
-            "\"a\" is not in a known point format: the formats are ply, xyz, csv, npy, json and obj",
+            "\"a\" is not in a known point format: the formats are ply, xyz, csv, npy, npz, json, obj and glb",
         ),
         ("a.ply", "1 2 3", "ply, "),
         ("a.npy", "1 2 3", "npy, file: the head is cut off"),
@@ -223,10 +350,25 @@ proptest! {
     fn positions_come_back_to_the_bit(xyz in prop::collection::vec([finite(), finite(), finite()], 1..20)) {
         let positions: Vec<_> = xyz.into_iter().map(DVec3::from_array).collect();
         let rows: Vec<_> = positions.iter().copied().map(row).collect();
-        for format in PointFormat::ALL {
+        // GLB has single precision.
+        for format in PointFormat::ALL.into_iter().filter(|&format| format != PointFormat::Glb) {
             let read = read_points(&written(format, &rows), format.name()).map_err(|e| TestCaseError::fail(e.to_string()))?;
             let bits = |points: &[DVec3]| points.iter().flat_map(|p| p.to_array()).map(f64::to_bits).collect::<Vec<_>>();
             prop_assert_eq!(bits(&read), bits(&positions), "{}", format);
+        }
+    }
+
+    #[test]
+    fn glb_holds_single_precision(xyz in prop::collection::vec([finite(), finite(), finite()], 1..3)) {
+        let positions: Vec<_> = xyz.into_iter().map(DVec3::from_array).collect();
+        let rows: Vec<_> = positions.iter().copied().map(row).collect();
+        let mut bytes = Vec::new();
+        let result = write_points(PointFormat::Glb, &rows, &mut bytes);
+        if positions.iter().any(|p| !p.as_vec3().is_finite()) {
+            prop_assert!(result.is_err_and(|error| error.to_string().contains("beyond single precision")));
+        } else {
+            let single: Vec<_> = positions.iter().map(|p| p.as_vec3().as_dvec3()).collect();
+            prop_assert_eq!(read_points(&bytes, "a"), Ok(single));
         }
     }
 

@@ -1,41 +1,84 @@
 //! Points as lines of text: XYZ, CSV, OBJ.
 
+use std::borrow::Cow;
 use std::io;
 
 use glam::DVec3;
 
-use crate::io::points::{COLUMNS, PointPlace, PointRow, Points, PointsError};
-use crate::sample::Origin;
+use crate::io::points::field::{self, origin_name};
+use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError};
 
-pub(super) fn write_xyz(rows: &[PointRow], out: &mut dyn io::Write) -> io::Result<()> {
-    for PointRow { position: p, .. } in rows {
-        writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z)?;
+pub(super) fn write_xyz(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
+    let numbers: Vec<&Field> = fields
+        .iter()
+        .filter(|field| !matches!(field.data, FieldData::Name { .. } | FieldData::Origin(_)))
+        .collect();
+    if numbers.len() > 1 {
+        let columns: Vec<&str> = numbers.iter().flat_map(|f| &f.columns).map(String::as_str).collect();
+        writeln!(out, "# {}", columns.join(" "))?;
+    }
+    write_rows(&numbers, " ", "nan", out)
+}
+
+pub(super) fn write_csv(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
+    let columns: Vec<_> = fields.iter().flat_map(|field| &field.columns).map(|name| quoted(name)).collect();
+    writeln!(out, "{}", columns.join(","))?;
+    write_rows(&fields.iter().collect::<Vec<_>>(), ",", "", out)
+}
+
+/// A line for each point; `none` stands for a number that is none.
+fn write_rows(fields: &[&Field], separator: &str, none: &str, out: &mut dyn io::Write) -> io::Result<()> {
+    for point in 0..fields.first().map_or(0, |field| field.point_count()) {
+        let mut before = "";
+        for field in fields {
+            let width = field.columns.len();
+            for index in point * width..(point + 1) * width {
+                out.write_all(before.as_bytes())?;
+                before = separator;
+                match &field.data {
+                    FieldData::Real(values, _) if values[index].is_nan() => write!(out, "{none}")?,
+                    FieldData::Real(values, _) => write!(out, "{:?}", values[index])?,
+                    FieldData::Id(values) => write!(out, "{}", values[index])?,
+                    FieldData::Byte(values) => write!(out, "{}", values[index])?,
+                    FieldData::Name { names, ids } => {
+                        let name = ids[index].and_then(|id| names.get(id as usize));
+                        write!(out, "{}", name.map_or(none.into(), |name| quoted(name)))?;
+                    }
+                    FieldData::Origin(origins) => write!(out, "{}", origin_name(origins[index]))?,
+                }
+            }
+        }
+        writeln!(out)?;
     }
     Ok(())
 }
 
-pub(super) fn write_obj(rows: &[PointRow], out: &mut dyn io::Write) -> io::Result<()> {
-    for PointRow { position: p, .. } in rows {
-        writeln!(out, "v {:?} {:?} {:?}", p.x, p.y, p.z)?;
+/// A name as CSV wants it (RFC 4180).
+fn quoted(name: &str) -> Cow<'_, str> {
+    if name.contains([',', '"', '\n', '\r']) {
+        Cow::Owned(format!("\"{}\"", name.replace('"', "\"\"")))
+    } else {
+        Cow::Borrowed(name)
     }
-    for PointRow { normal: n, .. } in rows {
-        writeln!(out, "vn {:?} {:?} {:?}", n.x, n.y, n.z)?;
-    }
-    Ok(())
 }
 
-pub(super) fn write_csv(rows: &[PointRow], out: &mut dyn io::Write) -> io::Result<()> {
-    writeln!(out, "{}", COLUMNS.join(","))?;
-    for PointRow { position: p, normal: n, sample } in rows {
-        let [b0, b1, b2] = sample.point.barycentric;
-        let origin = match sample.origin {
-            Origin::Wrapped => "wrapped",
-            Origin::Projected => "projected",
-            Origin::Equalized => "equalized",
-        };
-        write!(out, "{:?},{:?},{:?},{:?},{:?},{:?},", p.x, p.y, p.z, n.x, n.y, n.z)?;
-        write!(out, "{},{b0:?},{b1:?},{b2:?},{},", sample.point.face.0, sample.strip.0)?;
-        writeln!(out, "{:?},{:?},{origin}", sample.place.x, sample.place.y)?;
+pub(super) fn write_obj(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
+    let colors = field::colors(fields);
+    for (index, p) in field::reals(fields, "position", 3).unwrap_or_default().chunks_exact(3).enumerate() {
+        write!(out, "v {:?} {:?} {:?}", p[0], p[1], p[2])?;
+        if let Some(colors) = colors {
+            let [r, g, b] = [0, 1, 2].map(|i| f64::from(colors[4 * index + i]) / 255.0);
+            write!(out, " {r:?} {g:?} {b:?}")?;
+        }
+        writeln!(out)?;
+    }
+    for uv in field::reals(fields, "uv", 2).unwrap_or_default().chunks_exact(2) {
+        // The format has no word for none.
+        let [u, v] = [uv[0], uv[1]].map(|x| if x.is_nan() { 0.0 } else { x });
+        writeln!(out, "vt {u:?} {v:?}")?;
+    }
+    for n in field::reals(fields, "normal", 3).unwrap_or_default().chunks_exact(3) {
+        writeln!(out, "vn {:?} {:?} {:?}", n[0], n[1], n[2])?;
     }
     Ok(())
 }
@@ -108,7 +151,7 @@ pub(super) fn read_csv(bytes: &[u8], points: &mut Points) -> Result<(), PointsEr
 }
 
 /// The lines with their places; bytes that are not UTF-8 become replacement characters.
-fn lines(bytes: &[u8]) -> impl Iterator<Item = (PointPlace, std::borrow::Cow<'_, str>)> {
+fn lines(bytes: &[u8]) -> impl Iterator<Item = (PointPlace, Cow<'_, str>)> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     bytes
         .split(|&b| b == b'\n')

@@ -1,0 +1,213 @@
+//! What points carry, read back from the files byte by byte.
+
+use std::io::Write;
+use std::process::Command;
+
+use crate::common::{Folder, OCTAHEDRON};
+
+/// A PNG picture of 2 x 2 texels: red, green; blue, white.
+fn picture() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 2, 2);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().expect("a head");
+    writer.write_image_data(&[255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255]).expect("texels");
+    writer.finish().expect("a picture");
+    bytes
+}
+
+/// A square of 2 x 2 under the picture, all of it in the middles of texels: four quads, each with one place.
+fn textured() -> Folder {
+    let folder = Folder::new();
+    folder.write("t.png", picture());
+    folder.write("m.mtl", "newmtl paint\nKd 1 1 1\nmap_Kd t.png\n");
+    let mut obj =
+        String::from("mtllib m.mtl\nusemtl paint\nvt .25 .25\nvt .75 .25\nvt .25 .75\nvt .75 .75\n");
+    for y in 0..3 {
+        for x in 0..3 {
+            obj += &format!("v {x} {y} 0\n");
+        }
+    }
+    for (quad, (x, y)) in [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().enumerate() {
+        let (uv, first) = (quad + 1, 3 * y + x + 1);
+        obj += &format!(
+            "o quad{quad}\nf {first}/{uv} {}/{uv} {}/{uv} {}/{uv}\n",
+            first + 1,
+            first + 4,
+            first + 3
+        );
+    }
+    folder.write("square.obj", obj);
+    folder
+}
+
+/// The texel over a place of the square.
+fn texel(x: f64, y: f64) -> [u8; 3] {
+    match (x < 1.0, y < 1.0) {
+        (true, true) => [0, 0, 255],
+        (false, true) => [255, 255, 255],
+        (true, false) => [255, 0, 0],
+        (false, false) => [0, 255, 0],
+    }
+}
+
+#[test]
+fn points_of_a_textured_square() {
+    let folder = textured();
+    folder
+        .run("wrap square.obj -n 64 -q -o p.csv --attributes color,material,part,uv,polygon,cell-area")
+        .ok();
+    let text = folder.text("p.csv");
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("x,y,z,red,green,blue,alpha,material,part,u,v,polygon,cell_area"));
+    let mut area = 0.0;
+    let mut quads = [0; 4];
+    for line in lines {
+        let words: Vec<&str> = line.split(',').collect();
+        let number = |i: usize| words[i].parse::<f64>().expect("a number");
+        let (x, y) = (number(0), number(1));
+        let [r, g, b] = texel(x, y);
+        assert_eq!(words[3..8], [&r.to_string(), &g.to_string(), &b.to_string(), "255", "paint"], "{line}");
+        let quad = usize::from(x >= 1.0) + 2 * usize::from(y >= 1.0);
+        assert_eq!((words[8], words[11]), (&*format!("quad{quad}"), &*quad.to_string()), "{line}");
+        assert_eq!(
+            (number(9), number(10)),
+            (0.25 + 0.5 * f64::from(x >= 1.0), 0.25 + 0.5 * f64::from(y >= 1.0))
+        );
+        area += number(12);
+        quads[quad] += 1;
+    }
+    assert!((area - 4.0).abs() < 1e-9, "{area}");
+    assert_eq!(quads.iter().sum::<usize>(), 64);
+
+    // The properties that other programs look for, each where the head says.
+    folder.run("wrap square.obj -n 64 -q -o p.ply --attributes smooth-normal,color,uv").ok();
+    let bytes = folder.read("p.ply");
+    let end = b"end_header\n";
+    let start = bytes.windows(end.len()).position(|w| w == end).expect("a head") + end.len();
+    let head = String::from_utf8_lossy(&bytes[..start]);
+    let properties: Vec<&str> = head.lines().filter_map(|line| line.strip_prefix("property ")).collect();
+    assert_eq!(
+        properties,
+        [
+            "double x",
+            "double y",
+            "double z",
+            "float nx",
+            "float ny",
+            "float nz",
+            "uchar red",
+            "uchar green",
+            "uchar blue",
+            "uchar alpha",
+            "float s",
+            "float t"
+        ]
+    );
+    let row = 3 * 8 + 3 * 4 + 4 + 2 * 4;
+    assert_eq!(bytes.len() - start, 64 * row);
+    for point in bytes[start..].chunks_exact(row) {
+        let double = |i: usize| f64::from_le_bytes(point[i..i + 8].try_into().expect("eight bytes"));
+        assert_eq!(point[36..39], texel(double(0), double(8)));
+        assert_eq!(point[32..36], 1f32.to_le_bytes(), "nz");
+    }
+}
+
+#[test]
+fn all_that_there_is_in_every_format() {
+    let folder = textured();
+    for format in ["ply", "ply-ascii", "xyz", "csv", "npy", "npz", "json", "obj", "glb"] {
+        folder.run(&format!("wrap square.obj -n 30 -q -o p --format {format} --attributes all")).ok();
+        let measured = folder.run(&format!("measure square.obj p --points-format {format} --json -q")).ok();
+        assert_eq!(measured.json()["points"]["count"], 30, "{format}");
+    }
+    folder.run("wrap square.obj -n 30 -q -o p.json --attributes all").ok();
+    let json = folder.json("p.json");
+    let keys: Vec<&String> = json[0].as_object().expect("a point").keys().collect();
+    assert_eq!(keys.len(), 15, "{keys:?}");
+    assert_eq!((&json[0]["material"], &json[0]["normal"][2]), (&"paint".into(), &1.0.into()));
+}
+
+#[test]
+fn what_is_not_there_is_said() {
+    let folder = textured();
+    folder.write("octahedron.obj", OCTAHEDRON);
+    let wrap = |rest: &str| folder.run(&format!("wrap {rest}"));
+    wrap("octahedron.obj -o p.csv --attributes uv").failed(&["octahedron.obj", "has no uv", "leave it out"]);
+    wrap("octahedron.obj -o p.csv --attributes property:heat").failed(&["has no property:heat"]);
+    wrap("octahedron.obj -o p.csv --attributes nonsense").refused(&["must be all, property:NAME, or one of"]);
+    wrap("octahedron.obj -o p.csv --attributes uv,uv").refused(&["uv is given twice"]);
+    wrap("octahedron.obj -o p.csv --attributes uv,all").refused(&["all stands alone"]);
+    wrap("octahedron.obj -o p.npy --attributes uv").refused(&["npy cannot hold uv"]);
+    wrap("octahedron.obj -o p.obj --attributes face").refused(&["obj cannot hold face"]);
+    wrap("octahedron.obj --attributes face").refused(&["--output"]);
+    std::fs::remove_file(folder.path("t.png")).expect("a file");
+    wrap("square.obj -o p.csv --attributes color").failed(&["\"t.png\" is needed too", "keep it beside"]);
+    wrap("square.obj -n 5 -o p.csv --attributes material").ok();
+    std::fs::remove_file(folder.path("m.mtl")).expect("a file");
+    wrap("square.obj -o p.csv --attributes color").failed(&["\"m.mtl\" is needed too"]);
+}
+
+#[test]
+fn compressed_meshes_and_wrong_names() {
+    let folder = Folder::with_octahedron();
+    let zip = |bytes: &[u8]| {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+        encoder.write_all(bytes).expect("memory takes every byte");
+        encoder.finish().expect("memory takes every byte")
+    };
+    folder.run("wrap octahedron.obj -n 20 -q -o plain.csv").ok();
+    for extension in ["ply", "stl", "off", "obj"] {
+        folder.run(&format!("shape cube -q -o cube.{extension}")).ok();
+        let bytes = folder.read(&format!("cube.{extension}"));
+        folder.write(&format!("cube.{extension}.gz"), zip(&bytes));
+        folder.write("wrong.gltf", &bytes);
+        let info = |name: &str| folder.run(&format!("info {name} --json -q")).ok().json();
+        assert_eq!(info(&format!("cube.{extension}.gz")), info(&format!("cube.{extension}")));
+        assert_eq!(info("wrong.gltf"), info(&format!("cube.{extension}")));
+    }
+    let zipped = zip(OCTAHEDRON.as_bytes());
+    folder.write("o.gz", &zipped);
+    folder.run("wrap o.gz -n 20 -q -o zipped.csv").ok();
+    assert_eq!(folder.read("zipped.csv"), folder.read("plain.csv"));
+    folder.write("cut.obj.gz", &zipped[..zipped.len() / 2]);
+    folder.run("info cut.obj.gz").failed(&["cut.obj.gz", "gzip", "copy it again"]);
+    folder.write("a.obj", b"PK\x03\x04....");
+    folder.run("info a.obj.gz").failed(&["a.obj.gz"]);
+    folder.write("model.fbx", b"Kaydara FBX Binary  \0");
+    folder.run("info model.fbx").failed(&["this is FBX", "convert it to OBJ"]);
+}
+
+/// Runs only where the environment variable names a Python that has Open3D, trimesh and NumPy.
+#[test]
+fn other_programs_read_the_same() {
+    let Some(python) = std::env::var_os("LDWRAP_PEERS_PYTHON") else {
+        eprintln!("skipped: LDWRAP_PEERS_PYTHON names no Python with open3d, trimesh and numpy");
+        return;
+    };
+    let folder = textured();
+    for extension in ["csv", "ply", "npz", "glb"] {
+        folder.run(&format!("wrap square.obj -n 100 -q -o p.{extension} --attributes all")).ok();
+    }
+    let script = "
+import csv, numpy as np, open3d, trimesh
+rows = list(csv.DictReader(open('p.csv')))
+column = lambda *names: np.array([[float(row[n]) for n in names] for row in rows])
+xyz, normals, rgb = column('x', 'y', 'z'), column('nx', 'ny', 'nz'), column('red', 'green', 'blue')
+cloud = open3d.io.read_point_cloud('p.ply')
+assert np.array_equal(np.asarray(cloud.points), xyz)
+assert np.allclose(np.asarray(cloud.normals), normals, atol=1e-6)
+assert np.array_equal(np.round(np.asarray(cloud.colors) * 255), rgb)
+mesh = trimesh.load('p.ply')
+assert np.allclose(mesh.vertices, xyz) and np.array_equal(mesh.colors[:, :3], rgb)
+points = next(iter(trimesh.load('p.glb').geometry.values()))
+assert np.allclose(points.vertices, xyz, atol=1e-6)
+arrays = np.load('p.npz')
+assert np.array_equal(arrays['position'], xyz) and np.array_equal(arrays['color'][:, :3], rgb)
+assert list(arrays['material_names']) == ['paint']
+";
+    folder.write("check.py", script);
+    let output =
+        Command::new(python).arg("check.py").current_dir(folder.path("")).output().expect("Python runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}

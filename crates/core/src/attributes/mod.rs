@@ -1,0 +1,45 @@
+//! What a file knows about its surface besides the shape: normals, texture coordinates, colours, materials, parts, and
+//! any numbers at vertices; looked up at points of the checked surface.
+//!
+//! Values belong to corners of the soup's polygons, not to vertices, so that welding and cutting lose none of them:
+//! [`FaceSource`](crate::FaceSource) leads from a face to the corners it came from. Readers make the values
+//! ([`read_model`](crate::io::read_model)).
+//!
+//! Conventions, whatever the file's: colours are linear light (primaries of sRGB, D65) with straight alpha; texture
+//! coordinates have their origin at the lower left corner of the picture, as in OBJ and PLY, so `v` of glTF is turned
+//! over (1 - v).
+
+mod color;
+mod corners;
+mod place;
+#[cfg(test)]
+mod tests;
+mod texture;
+
+pub use color::{from_srgb, from_srgb8, to_srgb, to_srgb8};
+pub use corners::{CornerValues, PolygonNames};
+pub use place::Places;
+pub use texture::{Filter, Image, ImageError, Material, Texture, Tint, Wrap};
+
+use glam::{DVec2, DVec3, DVec4};
+
+/// Everything that a file says about its surface besides positions and polygons. What a file does not have is empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshAttributes {
+    /// Normals at corners, of length 1, in the axes of the positions.
+    pub normals: CornerValues<DVec3>,
+    /// Texture coordinates at corners: the sets of the file, in its order.
+    pub uv: Vec<CornerValues<DVec2>>,
+    /// Colours at corners: linear red, green, blue, and alpha, 0 to 1.
+    pub colors: CornerValues<DVec4>,
+    /// Other numbers at corners, with the names that the file gives them, as the scalar properties of PLY.
+    pub numbers: Vec<(String, CornerValues<f64>)>,
+    /// The material of each polygon: indices into `materials`.
+    pub material_of: PolygonNames,
+    /// The materials, in the order of `material_of.names`; `None` where the file only names one.
+    pub materials: Vec<Option<Material>>,
+    /// The pictures of the materials.
+    pub images: Vec<Image>,
+    /// The part that each polygon belongs to: node, object, group or solid, as the format calls it.
+    pub parts: PolygonNames,
+}

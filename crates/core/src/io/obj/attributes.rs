@@ -1,0 +1,136 @@
+//! What belongs to the corners and polygons of an OBJ file. Own code: `tobj` gives up at the first statement that is
+//! not as it expects, and keeps no order of polygons across groups.
+
+use std::str::FromStr;
+
+use glam::{DVec2, DVec3, DVec4};
+
+use crate::attributes::{CornerValues, MeshAttributes, PolygonNames, from_srgb};
+use crate::io::detect::MeshFormat;
+use crate::io::obj::for_each_statement;
+use crate::io::read::{Model, Place, ReadError, brief};
+
+/// Reads the attributes of a file whose polygons were read; gives the names of its material libraries.
+pub(super) fn read(text: &str, model: &mut Model) -> Result<Vec<String>, ReadError> {
+    let mut reader = Reader::default();
+    let mut line = 1;
+    let mut failed = None;
+    for_each_statement(text, |statement, line_breaks| {
+        if failed.is_none() {
+            failed = reader.statement(statement).err().map(|problem| (line, problem));
+        }
+        line += line_breaks;
+    });
+    if let Some((line, problem)) = failed {
+        return Err(ReadError::Malformed { format: MeshFormat::Obj, place: Place::Line(line), problem });
+    }
+    debug_assert_eq!(reader.corners, model.soup.corners.len());
+    let Reader { mut attributes, uv, color_of, libraries, .. } = reader;
+    attributes.uv = vec![uv];
+    for (corner, &vertex) in model.soup.corners.iter().enumerate() {
+        if let Some(color) = color_of.get(vertex as usize).copied().flatten() {
+            attributes.colors.set(corner, color);
+        }
+    }
+    model.attributes = attributes;
+    Ok(libraries)
+}
+
+/// What was read so far.
+#[derive(Default)]
+struct Reader {
+    attributes: MeshAttributes,
+    uv: CornerValues<DVec2>,
+    /// For each vertex the index of its colour.
+    color_of: Vec<Option<usize>>,
+    corners: usize,
+    polygons: usize,
+    material: Option<usize>,
+    part: Option<usize>,
+    libraries: Vec<String>,
+}
+
+impl Reader {
+    fn statement(&mut self, statement: &str) -> Result<(), String> {
+        let trimmed = statement.trim();
+        let (keyword, rest) = trimmed.split_once([' ', '\t']).unwrap_or((trimmed, ""));
+        match keyword {
+            "v" => {
+                let color = match numbers::<6>(rest) {
+                    Some([_, _, _, r, g, b]) => {
+                        let [r, g, b] = [r, g, b].map(|value: f64| from_srgb(value.clamp(0.0, 1.0)));
+                        Some(self.attributes.colors.extend([DVec4::new(r, g, b, 1.0)]))
+                    }
+                    None => None,
+                };
+                self.color_of.push(color);
+            }
+            "vn" => {
+                let normal = numbers(rest).map(DVec3::from_array);
+                let normal = normal.ok_or("`vn` must be followed by three numbers")?;
+                self.attributes.normals.extend([normal.normalize_or_zero()]);
+            }
+            "vt" => {
+                // One number is a place along a line.
+                let uv = numbers(rest).map(DVec2::from_array);
+                let uv = uv.or_else(|| numbers(rest).map(|[u]| DVec2::new(u, 0.0)));
+                self.uv.extend([uv.ok_or("`vt` must be followed by numbers")?]);
+            }
+            "f" | "fo" => self.face(rest)?,
+            "usemtl" => self.material = named(&mut self.attributes.material_of, rest),
+            "o" | "g" => self.part = named(&mut self.attributes.parts, rest),
+            "mtllib" if !rest.trim().is_empty() => self.libraries.push(rest.trim().to_owned()),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn face(&mut self, rest: &str) -> Result<(), String> {
+        for word in rest.split('#').next().unwrap_or_default().split_ascii_whitespace() {
+            let mut indices = word.split('/');
+            // The vertex itself is known already.
+            indices.next();
+            if let Some(uv) = place(indices.next(), self.uv.value_count(), word)? {
+                self.uv.set(self.corners, uv);
+            }
+            if let Some(normal) = place(indices.next(), self.attributes.normals.value_count(), word)? {
+                self.attributes.normals.set(self.corners, normal);
+            }
+            self.corners += 1;
+        }
+        let polygon = self.polygons..self.polygons + 1;
+        self.attributes.material_of.set(polygon.clone(), self.material);
+        self.attributes.parts.set(polygon, self.part);
+        self.polygons += 1;
+        Ok(())
+    }
+}
+
+/// The index of a name that is not empty.
+fn named(names: &mut PolygonNames, name: &str) -> Option<usize> {
+    let name = name.trim();
+    (!name.is_empty()).then(|| names.index_of(name))
+}
+
+/// The first `N` numbers; `None` unless there are as many.
+fn numbers<const N: usize>(rest: &str) -> Option<[f64; N]> {
+    let mut words = rest.split('#').next()?.split_ascii_whitespace();
+    let mut numbers = [0.0; N];
+    for number in &mut numbers {
+        *number = f64::from_str(words.next()?).ok().filter(|number| number.is_finite())?;
+    }
+    Some(numbers)
+}
+
+/// The place that an index stands for: counted from 1, or back from the last of `count` so far. `None` without an
+/// index.
+fn place(index: Option<&str>, count: usize, word: &str) -> Result<Option<usize>, String> {
+    let Some(index) = index.filter(|index| !index.is_empty()) else { return Ok(None) };
+    let wrong = || format!("the corner {:?} names what does not exist", brief(word));
+    let index = i64::from_str(index).map_err(|_| wrong())?;
+    let place = if index < 0 { count as i64 + index } else { index - 1 };
+    match usize::try_from(place) {
+        Ok(place) if place < count => Ok(Some(place)),
+        _ => Err(wrong()),
+    }
+}
