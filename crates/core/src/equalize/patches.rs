@@ -26,6 +26,9 @@ const FEWEST_OF_PLANE: f64 = 6.0;
 /// Normals no farther apart than this (squared distance) are those of one plane.
 const FLAT: f64 = 1e-8;
 
+/// What has at most this share of the mass of a plane may join it and leave it one.
+const RIM: f64 = 0.1;
+
 /// Which patch each face belongs to and how many points each patch gets.
 pub(super) struct Patches {
     /// `None` for the faces of components whose share came out as no point.
@@ -147,12 +150,18 @@ fn merge_small(mesh: &SurfaceMesh, strip_of_face: &[StripId], mass: &[f64], each
         }
         let best = borders.iter().max_by(|a, b| a.1.cmp(&b.1).then(a.2.total_cmp(&b.2)).then(b.0.cmp(&a.0)));
         let Some(&(other, _, _)) = best else { continue };
+        let [light_one, heavy_one] =
+            if weight[set as usize] <= weight[other as usize] { [set, other] } else { [other, set] };
+        // A rim makes no curved patch of a plane.
+        let rim = weight[light_one as usize] <= RIM * weight[heavy_one as usize];
+        let bent = curved[light_one as usize] || curved[heavy_one as usize] || far(set, other);
+        let is_curved = if rim { curved[heavy_one as usize] } else { bent };
         let joined = sets.join(set, other);
         let gone = if joined == set { other } else { set };
+        curved[joined as usize] = is_curved;
         let moved = std::mem::take(&mut members[gone as usize]);
         members[joined as usize].extend(moved);
         weight[joined as usize] += weight[gone as usize];
-        curved[joined as usize] |= curved[gone as usize] || far(joined, gone);
         if weight[joined as usize] < least(curved[joined as usize]) {
             light.push(Reverse((weight[joined as usize].to_bits(), joined)));
         }
