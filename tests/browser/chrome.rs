@@ -252,6 +252,14 @@ impl Chrome {
         }
     }
 
+    /// Gives a file to a control of the document that asks for one, found by a CSS selector.
+    pub(crate) fn choose_file(&mut self, selector: &str, path: &Path) {
+        let document = self.call("DOM.getDocument", json!({}));
+        let place = json!({"nodeId": document["root"]["nodeId"], "selector": selector});
+        let found = self.call("DOM.querySelector", place);
+        self.call("DOM.setFileInputFiles", json!({"nodeId": found["nodeId"], "files": [path]}));
+    }
+
     fn downloads(&self) -> PathBuf {
         self.folder.path().join("downloads")
     }

@@ -51,8 +51,27 @@ fn the_plane_is_moved_by_wheel_pointer_and_keys() {
         chrome.key("ArrowRight", "ArrowRight");
         chrome.wait_for_state(&format!("s.plane.centre[0] > {before}"));
         assert_eq!(chrome.state()["yaw"], yaw, "the surface was turned too");
+        let before = at_rest(chrome);
+        chrome.key("-", "Minus");
+        chrome.wait_for_state(&format!("s.plane.halfHeight > 1.1 * {}", before["plane"]["halfHeight"]));
+        assert_eq!(chrome.state()["distance"], before["distance"], "the surface was moved too");
         chrome.key("Home", "Home");
         chrome.wait_for_state("s.plane === null");
+        // The focus comes over from the surface, and the first arrow comes at once.
+        let surface = chrome.place_of("Surface");
+        chrome.move_to(surface);
+        chrome.press(surface, true);
+        chrome.press(surface, false);
+        chrome.move_to((x, y));
+        chrome.press((x, y), true);
+        chrome.press((x, y), false);
+        chrome.key("ArrowDown", "ArrowDown");
+        chrome.key("-", "Minus");
+        chrome.wait_for_state("s.plane?.halfHeight");
+        let state = at_rest(chrome);
+        assert_eq!((&state["yaw"], &state["distance"]), (&before["yaw"], &before["distance"]));
+        chrome.key("-", "Minus");
+        chrome.wait_for_state(&format!("s.plane.halfHeight > 1.1 * {}", state["plane"]["halfHeight"]));
     });
 }
 

@@ -133,6 +133,15 @@ fn it_opens_wrapped_and_shows_itself_in_light_dark_and_on_a_phone() {
             let status = chrome.evaluate("document.getElementById('status').textContent");
             assert!(status.as_str().is_some_and(|s| s.contains("1000 points")), "{status}");
             keep_picture(chrome, name);
+            let mute = chrome.evaluate(
+                "[...document.querySelectorAll('#mirror > div')].filter(e => !e.ariaLabel.trim()).map(e => e.outerHTML)",
+            );
+            assert_eq!(mute, json!([]), "controls without a name");
+            for number in ["Number of points", "Flatness angle", "Tolerance"] {
+                let find =
+                    format!("document.querySelector('#mirror > [role=spinbutton][aria-label=\"{number}\"]')");
+                chrome.wait_for(&find);
+            }
         });
     }
 }
@@ -148,6 +157,16 @@ fn a_dropped_file_is_shown_and_a_broken_one_leaves_it() {
     .expect("a file");
     let broken = folder.path().join("broken.ply");
     fs::write(&broken, "ply\nformat ascii 1.0\nelement vertex 3\n").expect("a file");
+    let apart = folder.path().join("apart.gltf");
+    let document = json!({
+        "asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri": "corners.bin"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0
+    });
+    fs::write(&apart, document.to_string()).expect("a file");
     on_page(DESKTOP, "", |chrome| {
         wait_for_points(chrome, 1000);
         chrome.drop_file(&good);
@@ -157,6 +176,12 @@ fn a_dropped_file_is_shown_and_a_broken_one_leaves_it() {
         let state = chrome.wait_for_state("!s.busy && s.notice?.problem");
         assert!(state["notice"]["problem"].as_str().is_some_and(|t| t.contains("broken.ply")), "{state}");
         assert_eq!((&state["mesh"], &state["points"]), (&json!("pyramid.obj"), &json!(1000)));
+        // A browser cannot look beside a file.
+        chrome.drop_file(&apart);
+        let state = chrome.wait_for_state("!s.busy && s.notice?.problem?.includes('apart.gltf')");
+        let told = state["notice"]["problem"].as_str().unwrap_or_default();
+        assert!(told.contains("corners.bin") && told.contains("GLB"), "{told}");
+        assert_eq!(state["mesh"], "pyramid.obj");
     });
 }
 
@@ -229,7 +254,7 @@ fn two_methods_are_compared_behind_an_obstacle() {
         for control in ["irregular band", "local surplus"] {
             chrome.activate(control);
         }
-        chrome.wait_for_state("s.verdicts === 7");
+        chrome.wait_for_state("s.verdicts === 7 && s.verdictsOfB === 7");
         keep_picture(chrome, "page-compare.png");
         chrome.activate("in the domain");
         chrome.activate("wireframe");
@@ -361,16 +386,62 @@ fn the_package_works_in_node_and_packs() {
         eprintln!("SKIPPED: the JavaScript package is not tested without node and npm");
         return;
     }
-    let output = Command::new("node").arg("example.mjs").current_dir(&package).output().expect("node runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let mesh = checked(&Shape::Cup.generate());
     let (_, _, positions) = native(&mesh, 1000);
-    let printed: Vec<u32> = String::from_utf8_lossy(&output.stdout)
-        .split_whitespace()
-        .map(|number| (number.parse::<f64>().expect("a number") as f32).to_bits())
-        .collect();
-    assert_eq!(printed, positions);
+    let in_worker = "new (require('node:worker_threads').Worker)('./example.mjs')";
+    for arguments in [["--no-warnings", "example.mjs"], ["--eval", in_worker]] {
+        let output = Command::new("node").args(arguments).current_dir(&package).output().expect("node runs");
+        assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+        let printed: Vec<u32> = String::from_utf8_lossy(&output.stdout)
+            .split_whitespace()
+            .map(|number| (number.parse::<f64>().expect("a number") as f32).to_bits())
+            .collect();
+        assert_eq!(printed, positions, "{arguments:?}");
+    }
     pack(&package);
+}
+
+#[test]
+fn the_package_works_in_a_page_and_its_worker() {
+    let Some(Built { package, browser, .. }) = built() else { return };
+    let _one = ONE.lock().unwrap_or_else(|broken| broken.into_inner());
+    let folder = tempfile::tempdir().expect("a folder");
+    let soup = Shape::Sphere.generate();
+    let bytes = ldwrap::io::mesh_out::write_obj(&soup).expect("a mesh");
+    let file = folder.path().join("sphere.obj");
+    fs::write(&file, &bytes).expect("a file");
+    let server = Server::start(&package, 0).expect("a server");
+    let mut chrome = Chrome::start(&browser, DESKTOP);
+    chrome.open(&format!("{}example.html", server.address()));
+    chrome.wait_for("document.querySelector('pre')");
+    chrome.choose_file("input", &file);
+    chrome.wait_for("document.querySelector('pre').textContent.startsWith('500 points on ')");
+    let ask = |message: &str| {
+        format!(
+            "new Promise((told, broken) => {{
+                const worker = new Worker('worker.js', {{ type: 'module' }});
+                worker.onmessage = ({{ data: d }}) => told(d.error ?? [d.faces, d.positions, d.normals].map(
+                    a => Array.from(new Uint32Array(a.buffer), String)));
+                worker.onerror = () => broken(new Error('the worker broke'));
+                worker.postMessage({message});
+            }})"
+        )
+    };
+    let text = json!(String::from_utf8_lossy(&bytes));
+    let message = format!(
+        "{{ bytes: new TextEncoder().encode({text}), name: 'sphere.obj', options: {{ request: {{ count: 700 }} }} }}"
+    );
+    let got = chrome.evaluate(&ask(&message));
+    let alone = |_: &str| Err(String::new());
+    let mesh = checked(&ldwrap::io::read_mesh(&bytes, Some("sphere.obj"), &alone).expect("a mesh"));
+    let (faces, _, positions) = native(&mesh, 700);
+    assert_eq!(bits::<u32>(&got[0]), faces);
+    assert_eq!(bits::<u32>(&got[1]), positions);
+    assert_eq!(bits::<u32>(&got[2]).len(), positions.len());
+    let told = chrome.evaluate(&ask("{ bytes: new Uint8Array(9), name: 'broken.ply' }"));
+    assert!(told.as_str().is_some_and(|t| t.contains("broken.ply")), "{told}");
+    let problems: Vec<_> = chrome.problems().into_iter().filter(|p| !p.contains("favicon")).collect();
+    assert!(problems.is_empty(), "the page reported errors: {problems:#?}");
 }
 
 fn pack(package: &Path) {

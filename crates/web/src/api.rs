@@ -30,7 +30,7 @@ export interface Options {
   sequence?: Sequence;
   /** Shifts the point set; 0 (default) leaves it as it is. */
   seed?: number;
-  /** The largest angle in degrees that counts as almost flat. Default: 40. */
+  /** The largest angle in degrees that counts as almost flat. Default: 60. */
   flatnessAngle?: number;
   /** Default: "least-open". */
   growth?: "least-open" | "flattest-first" | "boundary-walk" | "longest-first";
@@ -74,7 +74,7 @@ extern "C" {
 /// the mesh or the options are wrong.
 #[wasm_bindgen]
 pub fn wrap(bytes: &[u8], name: &str, options: Option<JsOptions>) -> Result<JsWrapped, JsError> {
-    run(&Source::File { name: name.to_owned(), bytes: bytes.to_vec() }, options)
+    run(&Source::alone(name.to_owned(), bytes.to_vec()), options)
 }
 
 /// Spreads points over a built-in shape; see `shapes`.

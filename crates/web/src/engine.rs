@@ -254,7 +254,7 @@ mod tests {
     fn a_broken_file_leaves_the_old_mesh_in_place() {
         let mut engine = Engine::default();
         assert!(matches!(answer(&mut engine, Job::Load(Source::Shape(Shape::Sphere))), Answer::Loaded(_)));
-        let broken = Source::File { name: "broken.obj".into(), bytes: b"f 1 2 3".to_vec() };
+        let broken = Source::alone("broken.obj".into(), b"f 1 2 3".to_vec());
         let Answer::Failed(reason) = answer(&mut engine, Job::Load(broken)) else {
             panic!("a broken file was read")
         };

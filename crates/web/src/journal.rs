@@ -171,7 +171,7 @@ mod tests {
     fn a_mesh_that_failed_to_load_is_not_loaded_again() {
         let (mut engine, mut journal) = (Engine::default(), Journal::default());
         work(&mut engine, &mut journal, Job::Load(Source::Shape(Shape::Cube)));
-        work(&mut engine, &mut journal, Job::Load(Source::File { name: "x.obj".into(), bytes: Vec::new() }));
+        work(&mut engine, &mut journal, Job::Load(Source::alone("x.obj".into(), Vec::new())));
         assert_eq!(journal.restart(), Some(Job::Load(Source::Shape(Shape::Cube))));
     }
 }

@@ -83,7 +83,12 @@ pub fn judge(
     measure: Measure,
     progress: &dyn Progress,
 ) -> Verdict {
-    let of = |error: f64, note: String| Verdict { error: Some(error), note, local: Vec::new() };
+    // Where random points err by nothing either, as on one triangle, there is nothing to compare with.
+    let of = |error: f64, note: String| Verdict {
+        error: error.is_finite().then_some(error),
+        note,
+        local: Vec::new(),
+    };
     match measure {
         Measure::Energy => {
             let report =

@@ -1,5 +1,6 @@
 //! The page in a window: `ldwrap-web [MESH | #SETTINGS]`.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use eframe::egui;
@@ -12,10 +13,10 @@ fn main() -> ExitCode {
     let (link, file) = match arguments.as_slice() {
         [] => (None, None),
         [settings] if settings.starts_with('#') => (Link::from_fragment(settings), None),
-        [path] if !path.starts_with('-') => match std::fs::read(path) {
-            Ok(bytes) => (None, Some(Source::File { name: file_name(path), bytes })),
-            Err(error) => {
-                eprintln!("ldwrap-web: {path}: {error}");
+        [path] if !path.starts_with('-') => match Source::open(Path::new(path)) {
+            Ok(source) => (None, Some(source)),
+            Err(reason) => {
+                eprintln!("ldwrap-web: {reason}");
                 return ExitCode::FAILURE;
             }
         },
@@ -41,10 +42,4 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-fn file_name(path: &str) -> String {
-    std::path::Path::new(path)
-        .file_name()
-        .map_or_else(|| path.to_owned(), |n| n.to_string_lossy().into_owned())
 }

@@ -81,6 +81,9 @@ pub type TrailStep = [Option<f64>; 2];
 /// A file's name and bytes.
 pub type NamedFile = (String, Vec<u8>);
 
+/// The largest sample figure that the page offers.
+pub const MOST_RINGS: u32 = 60;
+
 /// How many views the trail remembers.
 const TRAIL: usize = 160;
 
@@ -241,6 +244,10 @@ impl Model {
                     self.cancels.push(Desk::Maker);
                 }
                 self.queue.push_front(Job::Wrap(slot, wanted.clone()));
+                // Equalizing takes most of the time: while nothing is shown yet, what it starts from is shown first.
+                if slot == Slot::A && self.runs[0].is_none() && wanted.equalizes() {
+                    self.queue.push_front(Job::Wrap(slot, Settings { equalize: false, ..wanted.clone() }));
+                }
             }
         }
     }
@@ -278,7 +285,8 @@ impl Model {
             jobs.push((Desk::Maker, job));
         }
         if self.judging == Judging::Idle
-            && let Some(job) = self.judge_queue.pop_front()
+            && let Some(job) =
+                self.judge_queue.pop_front_if(|job| !is_replaced(job, &self.queue, &self.in_hand))
         {
             self.judging = match job {
                 Job::Judge(slot, measure) => Judging::Measures(slot, measure),
@@ -381,6 +389,7 @@ impl Model {
         self.unseen = self.source.clone();
         self.stop_judging(|_| true);
         self.orbit = Orbit::around(mesh.centre, mesh.radius, mesh.up.0);
+        self.rings = rings_for(mesh.report.faces);
         self.plane = None;
         self.runs = [None, None];
         self.verdicts = [Vec::new(), Vec::new()];
@@ -525,6 +534,7 @@ impl Model {
             "look": self.look.map(|l| json!({"surface": l.surface, "points": l.points})),
             "trail": self.trail.len(),
             "verdicts": self.verdicts[0].len(),
+            "verdictsOfB": self.verdicts[1].len(),
             "up": self.orbit.up,
             "obstacle": self.occluder.map(|o| [o.low, o.high]),
             "plane": self.plane.map(|p| json!({"centre": p.centre, "halfHeight": p.half_height})),
@@ -539,6 +549,17 @@ impl Model {
             "status": self.status(),
         })
     }
+}
+
+/// How many rings make a sample figure that can be seen: about a thirtieth of the triangles.
+fn rings_for(faces: usize) -> u32 {
+    ((0.02 * faces as f64).sqrt().round() as u32).clamp(2, MOST_RINGS)
+}
+
+/// Whether a job for the judge is about points that the maker's jobs will replace.
+fn is_replaced(job: &Job, queue: &VecDeque<Job>, in_hand: &Option<Job>) -> bool {
+    let (Job::Judge(slot, _) | Job::Place(slot, _)) = job else { return false };
+    queue.iter().chain(in_hand).any(|waiting| matches!(waiting, Job::Wrap(replaced, _) if replaced == slot))
 }
 
 #[cfg(test)]
@@ -602,7 +623,7 @@ mod tests {
     fn a_broken_file_is_told_and_the_old_mesh_stays() {
         let (mut model, mut office) = (Model::open(None), Office::new());
         office.work(&mut model);
-        model.load(Source::File { name: "broken.ply".into(), bytes: b"no mesh".to_vec() });
+        model.load(Source::alone("broken.ply".into(), b"no mesh".to_vec()));
         office.work(&mut model);
         assert!(matches!(&model.notice, Some(Notice::Problem(text)) if text.contains("broken.ply")));
         assert_eq!(model.mesh.as_ref().unwrap().name, "cup");
@@ -628,6 +649,49 @@ mod tests {
     }
 
     #[test]
+    fn points_are_shown_before_they_are_equalized_and_measured_after() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        let mut shown = Vec::new();
+        for _ in 0..3 {
+            for (desk, job) in model.take_jobs() {
+                match desk {
+                    Desk::Maker => model.receive(office.maker.handle(job, &Silent, &|| 0.0)),
+                    Desk::Judge => {
+                        assert!(matches!(job, Job::Load(_)), "points that are replaced were measured");
+                        model.receive_verdict(office.judge.handle(job, &Silent, &|| 0.0));
+                    }
+                    Desk::Looker => model.receive_look(office.looker.handle(job, &Silent, &|| 0.0)),
+                }
+            }
+            shown.push((model.runs[0].as_ref().map(|run| run.points.len()), model.is_busy()));
+        }
+        assert_eq!(shown, [(None, true), (Some(1000), true), (Some(1000), false)]);
+        office.work(&mut model);
+        assert_eq!(model.verdicts[0].len(), Measure::ALL.len());
+    }
+
+    #[test]
+    fn what_is_shown_when_the_person_stops_is_measured() {
+        let (mut model, mut office) = (Model::open(None), Office::new());
+        for _ in 0..3 {
+            for (desk, job) in model.take_jobs() {
+                match desk {
+                    Desk::Maker if model.runs[0].is_some() => {
+                        model.cancel();
+                        model.receive(Answer::Cancelled);
+                    }
+                    Desk::Maker => model.receive(office.maker.handle(job, &Silent, &|| 0.0)),
+                    Desk::Judge => model.receive_verdict(office.judge.handle(job, &Silent, &|| 0.0)),
+                    Desk::Looker => model.receive_look(office.looker.handle(job, &Silent, &|| 0.0)),
+                }
+            }
+        }
+        assert!(!model.is_busy() && model.notice.is_some());
+        office.work(&mut model);
+        assert_eq!(model.verdicts[0].len(), Measure::ALL.len());
+    }
+
+    #[test]
     fn comparing_fills_the_second_slot() {
         let (mut model, mut office) = (Model::open(None), Office::new());
         office.work(&mut model);
@@ -647,6 +711,7 @@ mod tests {
         let figure = model.figure.as_ref().unwrap();
         assert_eq!(figure.seed, model.runs[0].as_ref().unwrap().points[0].face);
         assert!(figure.degree >= 1);
+        assert!((0.005..0.1).contains(&figure.area_share), "too small to be seen: {}", figure.area_share);
         assert!(!model.describe(model.pinned.unwrap()).is_empty());
         model.pin(None);
         assert!(model.figure.is_none());

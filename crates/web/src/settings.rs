@@ -81,10 +81,14 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Whether the points are equalized: only this method's are.
+    pub fn equalizes(&self) -> bool {
+        self.equalize && self.method == Method::Wrap
+    }
+
     /// The library's options; what the method fixes overrides what was set.
     pub fn options(&self) -> Options {
         let paper = self.method == Method::Paper;
-        let equalize = self.equalize && self.method == Method::Wrap;
         Options {
             request: self.request,
             segment: SegmentOptions {
@@ -96,7 +100,7 @@ impl Settings {
             seed: self.seed,
             selection: if paper { Selection::Sequence } else { Selection::Regions },
             tolerance: self.tolerance,
-            equalize: equalize.then(EqualizeOptions::default),
+            equalize: self.equalizes().then(EqualizeOptions::default),
             ..Options::default()
         }
     }

@@ -162,7 +162,7 @@ mod tests {
             ("fruit-drink-800.obj", Up::Z),
         ] {
             let bytes = std::fs::read(folder.join(name)).unwrap();
-            let corners = corners(&Source::File { name: name.into(), bytes });
+            let corners = corners(&Source::alone(name.into(), bytes));
             let firm = [Up::Y, Up::Z].map(|up| firmness(&corners, up));
             assert_eq!(guess(name, &corners).0, up, "{name}: {firm:?}");
         }

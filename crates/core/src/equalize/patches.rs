@@ -16,8 +16,18 @@ use crate::mesh::SurfaceMesh;
 /// Neighbours whose normals are at least this far apart (squared distance; 4 sin^2(15 degrees)) meet in a crease.
 const CREASE: f64 = 0.267_949_192_431_122_7;
 
-/// A patch worth fewer points than this joins a neighbour: rounding its number would change its density too much.
-const FEWEST: f64 = 4.0;
+/// A curved patch worth fewer points than this joins a neighbour: rounding its number would change its density too
+/// much.
+const FEWEST: f64 = 40.0;
+
+/// The same for a plane, whose share views and counts tell more about.
+const FEWEST_OF_PLANE: f64 = 6.0;
+
+/// Normals no farther apart than this (squared distance) are those of one plane.
+const FLAT: f64 = 1e-8;
+
+/// What has at most this share of the mass of a plane may join it and leave it one.
+const RIM: f64 = 0.1;
 
 /// Which patch each face belongs to and how many points each patch gets.
 pub(super) struct Patches {
@@ -41,7 +51,7 @@ impl Patches {
                 }
             }
         }
-        merge_small(mesh, strip_of_face, mass, FEWEST * total / n as f64, &mut sets);
+        merge_small(mesh, strip_of_face, mass, total / n as f64, &mut sets);
 
         // Order: components along a curve through space, so that neighbours share the rounding.
         let mut moments = vec![(DVec3::ZERO, 0.0); components.count];
@@ -92,9 +102,9 @@ fn neighbours(mesh: &SurfaceMesh, face: FaceId) -> impl Iterator<Item = (FaceId,
     })
 }
 
-/// Joins every set lighter than `least` to a neighbour, the lightest first: one of its own strip if there is one,
-/// then the one with the longest common border.
-fn merge_small(mesh: &SurfaceMesh, strip_of_face: &[StripId], mass: &[f64], least: f64, sets: &mut Sets) {
+/// Joins every set worth too few points (`each` is the mass for a point) to a neighbour, the lightest first: one of
+/// its own strip if there is one, then the one with the longest common border.
+fn merge_small(mesh: &SurfaceMesh, strip_of_face: &[StripId], mass: &[f64], each: f64, sets: &mut Sets) {
     let count = mesh.face_count();
     let mut weight = vec![0.0; count];
     let mut members: Vec<Vec<u32>> = vec![Vec::new(); count];
@@ -103,8 +113,16 @@ fn merge_small(mesh: &SurfaceMesh, strip_of_face: &[StripId], mass: &[f64], leas
         weight[root] += mass[f as usize];
         members[root].push(f);
     }
+    let far =
+        |a: u32, b: u32| mesh.face_normal(FaceId(a)).distance_squared(mesh.face_normal(FaceId(b))) > FLAT;
+    let mut curved = vec![false; count];
+    for f in 0..count as u32 {
+        let root = sets.root(f);
+        curved[root as usize] |= far(f, root);
+    }
+    let least = |curved: bool| each * if curved { FEWEST } else { FEWEST_OF_PLANE };
     let mut light: BinaryHeap<Reverse<(u64, u32)>> = (0..count as u32)
-        .filter(|&f| !members[f as usize].is_empty() && weight[f as usize] < least)
+        .filter(|&f| !members[f as usize].is_empty() && weight[f as usize] < least(curved[f as usize]))
         .map(|f| Reverse((weight[f as usize].to_bits(), f)))
         .collect();
     while let Some(Reverse((bits, set))) = light.pop() {
@@ -132,12 +150,19 @@ fn merge_small(mesh: &SurfaceMesh, strip_of_face: &[StripId], mass: &[f64], leas
         }
         let best = borders.iter().max_by(|a, b| a.1.cmp(&b.1).then(a.2.total_cmp(&b.2)).then(b.0.cmp(&a.0)));
         let Some(&(other, _, _)) = best else { continue };
+        let [light_one, heavy_one] =
+            if weight[set as usize] <= weight[other as usize] { [set, other] } else { [other, set] };
+        // A rim makes no curved patch of a plane.
+        let rim = weight[light_one as usize] <= RIM * weight[heavy_one as usize];
+        let bent = curved[light_one as usize] || curved[heavy_one as usize] || far(set, other);
+        let is_curved = if rim { curved[heavy_one as usize] } else { bent };
         let joined = sets.join(set, other);
         let gone = if joined == set { other } else { set };
+        curved[joined as usize] = is_curved;
         let moved = std::mem::take(&mut members[gone as usize]);
         members[joined as usize].extend(moved);
         weight[joined as usize] += weight[gone as usize];
-        if weight[joined as usize] < least {
+        if weight[joined as usize] < least(curved[joined as usize]) {
             light.push(Reverse((weight[joined as usize].to_bits(), joined)));
         }
     }

@@ -11,7 +11,7 @@ use super::keys::KEYS;
 use crate::camera::Up;
 use crate::engine::Slot;
 use crate::export::Export;
-use crate::model::{Colouring, Model, Notice};
+use crate::model::{Colouring, MOST_RINGS, Model, Notice};
 use crate::scene::Layout;
 use crate::settings::{Method, Settings};
 use crate::source::Source;
@@ -144,7 +144,7 @@ pub(super) fn show(ui: &mut egui::Ui, model: &mut Model) {
         }
     });
     let mut rings = model.rings;
-    if slider(ui, "Sample figure, rings", Slider::new(&mut rings, 0..=60)) {
+    if slider(ui, "Sample figure, rings", Slider::new(&mut rings, 0..=MOST_RINGS)) {
         model.rings = rings;
         model.grow();
     }

@@ -4,10 +4,10 @@ use std::sync::{Arc, Mutex};
 
 use eframe::egui;
 
-use crate::model::NamedFile;
+use crate::source::Source;
 
-/// A file's name and bytes, or why it could not be read.
-type Arrived = Result<NamedFile, String>;
+/// A file, or why it could not be read.
+type Arrived = Result<Source, String>;
 
 /// Files that were opened or dropped and wait to be loaded.
 #[derive(Clone)]
@@ -37,17 +37,16 @@ impl Inbox {
     pub(super) fn take_dropped(&self, ctx: &egui::Context) {
         for file in ctx.input(|i| i.raw.dropped_files.clone()) {
             let inbox = self.clone();
-            let name = file.path().file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+            // Reading takes time, so it gets a thread.
             #[cfg(not(target_arch = "wasm32"))]
-            inbox.put(file.bytes().map(|bytes| (name.clone(), bytes)).map_err(|e| format!("{name}: {e}")));
+            std::thread::spawn(move || inbox.put(Source::open(file.path())));
             #[cfg(target_arch = "wasm32")]
             wasm_bindgen_futures::spawn_local(async move {
-                inbox.put(
-                    file.bytes_async()
-                        .await
-                        .map(|bytes| (name.clone(), bytes))
-                        .map_err(|e| format!("{name}: {e}")),
-                );
+                let name = file.path().display().to_string();
+                inbox.put(match file.bytes_async().await {
+                    Ok(bytes) => Ok(Source::alone(name, bytes)),
+                    Err(reason) => Err(format!("{name}: {reason}")),
+                });
             });
         }
     }
@@ -77,10 +76,7 @@ impl Inbox {
         // The dialog blocks, so it gets a thread.
         std::thread::spawn(move || {
             if let Some(path) = rfd::FileDialog::new().add_filter("meshes", &EXTENSIONS).pick_file() {
-                let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-                inbox.put(
-                    std::fs::read(&path).map(|b| (name, b)).map_err(|e| format!("{}: {e}", path.display())),
-                );
+                inbox.put(Source::open(&path));
             }
         });
     }
@@ -119,6 +115,7 @@ mod browser {
 
     use super::Inbox;
     use crate::settings::Link;
+    use crate::source::Source;
 
     fn document() -> Option<web_sys::Document> {
         web_sys::window()?.document()
@@ -139,7 +136,7 @@ mod browser {
                     let name = file.name();
                     let read = file.array_buffer().await;
                     inbox.put(match read {
-                        Ok(buffer) => Ok((name, js_sys::Uint8Array::new(&buffer).to_vec())),
+                        Ok(buffer) => Ok(Source::alone(name, js_sys::Uint8Array::new(&buffer).to_vec())),
                         Err(error) => Err(format!("{name}: {error:?}")),
                     });
                 });

@@ -4,7 +4,7 @@ use eframe::egui::{self, Key};
 use glam::Vec2;
 
 use crate::camera::{PlaneView, Up};
-use crate::model::{Colouring, Model};
+use crate::model::{Colouring, MOST_RINGS, Model};
 use crate::scene::Layout;
 
 /// What a key does, for the list that a person can open.
@@ -57,7 +57,7 @@ pub(super) fn handle(ctx: &egui::Context, model: &mut Model) {
         model.rings -= 1;
         model.grow();
     }
-    if pressed(Key::CloseBracket) {
+    if pressed(Key::CloseBracket) && model.rings < MOST_RINGS {
         model.rings += 1;
         model.grow();
     }
@@ -124,9 +124,12 @@ fn arrows(input: &egui::InputState) -> Vec2 {
     Vec2::new(axis(Key::ArrowLeft, Key::ArrowRight), axis(Key::ArrowUp, Key::ArrowDown))
 }
 
-/// Lets a view that has the focus take the arrows.
+/// Gives a view that is clicked the focus, and lets it take the arrows as long as it has it.
 pub(super) fn take_arrows(ui: &egui::Ui, view: &egui::Response) {
-    if view.gained_focus() || view.clicked() {
+    if view.clicked() && !view.has_focus() {
+        view.request_focus();
+    }
+    if view.gained_focus() {
         // Only from its second frame on can a view keep the arrows; that frame must not wait for an arrow.
         ui.ctx().request_repaint();
     }

@@ -151,10 +151,12 @@ fn write(element: &Element, shown: &Shown) {
 
 fn shown(node: &Node, nodes: &BTreeMap<u64, &Node>) -> Option<Shown> {
     let role = aria(node.role())?;
-    let named_by =
-        || node.labelled_by().first().and_then(|id| nodes.get(&id.0)).and_then(|n| n.label().or(n.value()));
-    let text = matches!(node.role(), Role::Label | Role::Heading).then(|| node.value()).flatten();
-    let name = node.label().or(text).or_else(named_by)?.to_owned();
+    // A control without a name is shown too: that it is there is better than silence.
+    let name = match name(node, nodes, 3) {
+        Some(name) => name.to_owned(),
+        None if is_control(role) => String::new(),
+        None => return None,
+    };
     let value = node.value().map(str::to_owned).or_else(|| node.numeric_value().map(|v| v.to_string()));
     let bounds = node.bounds()?;
     Some(Shown {
@@ -165,6 +167,20 @@ fn shown(node: &Node, nodes: &BTreeMap<u64, &Node>) -> Option<Shown> {
         disabled: node.is_disabled(),
         place: [bounds.x0, bounds.y0, bounds.x1 - bounds.x0, bounds.y1 - bounds.y0].map(|v| v.round() as i32),
     })
+}
+
+/// The name of a node: its own, or that of what it is labelled by, which may be labelled in turn.
+fn name<'a>(node: &'a Node, nodes: &BTreeMap<u64, &'a Node>, steps: u32) -> Option<&'a str> {
+    let text = matches!(node.role(), Role::Label | Role::Heading).then(|| node.value()).flatten();
+    node.label().or(text).or_else(|| {
+        let by = nodes.get(&node.labelled_by().first()?.0)?;
+        name(by, nodes, steps.checked_sub(1)?)
+    })
+}
+
+/// Whether a role is one of things that people operate.
+fn is_control(role: &str) -> bool {
+    !matches!(role, "heading" | "img" | "meter" | "note")
 }
 
 /// The ARIA role of what people use or read; `None` for mere containers.

@@ -47,7 +47,6 @@ pub(super) fn show(
         model.hover = pick::in_plane(&run, model.layout, view.place(aspect, clip), &seen);
     }
     if response.clicked() {
-        response.request_focus();
         model.pin(model.hover);
     }
 

@@ -4,6 +4,7 @@ use eframe::egui::{self, Color32, RichText, Stroke, pos2, vec2};
 use egui::accesskit::Role;
 
 use super::theme;
+use crate::judge::Measure;
 use crate::model::Model;
 
 /// Shows all numbers. `frame` is the time that a frame takes, in milliseconds.
@@ -12,14 +13,15 @@ pub(super) fn show(ui: &mut egui::Ui, model: &mut Model, frame: f64) {
     ui.heading("What this view sees");
     view(ui, model);
     ui.separator();
+    // Near the top: what is pointed at must be read without scrolling.
+    ui.heading("Under the pointer");
+    pointer(ui, model);
+    ui.separator();
     ui.heading("This mesh");
     mesh(ui, model);
     ui.separator();
     ui.heading("Measures");
     measures(ui, model);
-    ui.separator();
-    ui.heading("Under the pointer");
-    pointer(ui, model);
     ui.separator();
     ui.label(RichText::new(format!("{frame:.0} ms a frame while moving")).weak());
 }
@@ -40,7 +42,9 @@ fn view(ui: &mut egui::Ui, model: &Model) {
                 if model.comparing { format!("points of {}", slot.name()) } else { "visible points".into() };
             ui.label(name);
             ui.strong(percent(points));
-            ui.label(format!("{:+.1} %", 100.0 * (points - look.surface)));
+            // Adding zero makes -0 a 0.
+            let tenths = (1000.0 * (points - look.surface)).round() + 0.0;
+            ui.label(format!("{:+.1} %", 0.1 * tenths));
             ui.end_row();
         }
     });
@@ -124,8 +128,11 @@ fn mesh(ui: &mut egui::Ui, model: &Model) {
 
 fn measures(ui: &mut egui::Ui, model: &Model) {
     ui.label(RichText::new("error, where 1 is that of random points").weak());
-    for slot in model.slots() {
-        for (measure, verdict) in &model.verdicts[slot.index()] {
+    // A and B next to each other, measure by measure.
+    for measure in Measure::ALL {
+        for slot in model.slots() {
+            let mut verdicts = model.verdicts[slot.index()].iter();
+            let Some((_, verdict)) = verdicts.find(|(of, _)| *of == measure) else { continue };
             let name = if model.comparing {
                 format!("{} {}", slot.name(), measure.name())
             } else {

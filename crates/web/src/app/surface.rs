@@ -37,7 +37,6 @@ pub(super) fn show(
     let matrix = model.orbit.matrix(aspect);
     point_at(ui, rect, model, slot, &response, aspect);
     if response.clicked() {
-        response.request_focus();
         model.pin(model.hover);
     }
 
