@@ -216,6 +216,9 @@ pub(crate) struct WrapArgs {
     /// In which order the points are written
     #[arg(long, value_enum, value_name = "ORDER", default_value = "sequence")]
     pub(crate) order: OrderArg,
+    /// Work on the faces of this material or part alone, as material:NAME or part:NAME; may be given several times
+    #[arg(long, value_name = "WHAT", conflicts_with = "weights")]
+    pub(crate) only: Vec<OnlyArg>,
     #[command(flatten)]
     pub(crate) weights: WeightsArgs,
     #[command(flatten)]
@@ -281,6 +284,58 @@ pub(crate) struct WeightsArgs {
     /// What the weights belong to [default: told by their number]
     #[arg(long, value_enum, value_name = "WHAT", requires = "weights")]
     pub(crate) weights_of: Option<WeightsOf>,
+    /// Make points in proportion to what the mesh file has at its corners: property:NAME of a PLY file, or red, green,
+    /// blue, luminance or alpha of the base colour (in linear light, 0 to 1); linear on each triangle
+    #[arg(long, value_name = "NAME", conflicts_with = "weights")]
+    pub(crate) weights_by: Option<WeightsBy>,
+}
+
+/// What the mesh has that weights are taken from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum WeightsBy {
+    Red,
+    Green,
+    Blue,
+    Luminance,
+    Alpha,
+    Property(String),
+}
+
+impl FromStr for WeightsBy {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Ok(match text {
+            "red" => Self::Red,
+            "green" => Self::Green,
+            "blue" => Self::Blue,
+            "luminance" => Self::Luminance,
+            "alpha" => Self::Alpha,
+            text => match text.strip_prefix("property:") {
+                Some(name) if !name.is_empty() => Self::Property(name.to_owned()),
+                _ => return Err("must be red, green, blue, luminance, alpha or property:NAME".to_owned()),
+            },
+        })
+    }
+}
+
+/// A material or a part.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum OnlyArg {
+    Material(String),
+    Part(String),
+}
+
+impl FromStr for OnlyArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once(':') {
+            Some(("material", name)) if !name.is_empty() => Ok(Self::Material(name.to_owned())),
+            Some(("part", name)) if !name.is_empty() => Ok(Self::Part(name.to_owned())),
+            _ => Err("must be material:NAME or part:NAME".to_owned()),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

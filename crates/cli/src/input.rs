@@ -9,7 +9,7 @@ use ldwrap::attributes::MeshAttributes;
 use ldwrap::io::{Detail, MeshFormat, Model, read_model, read_model_as};
 use ldwrap::{CheckOptions, PolygonSoup, Progress, RepairReport, SurfaceMesh};
 
-use crate::args::{MeshArgs, MeshFormatArg};
+use crate::args::{MeshArgs, MeshFormatArg, OnlyArg};
 
 /// A checked mesh and what had to be done to it.
 pub(crate) struct Input {
@@ -25,11 +25,16 @@ pub(crate) struct Input {
 
 /// Reads and checks a mesh; `progress` hears the stages `read` and `check`.
 pub(crate) fn read(args: &MeshArgs, progress: &dyn Progress) -> anyhow::Result<Input> {
-    read_detail(args, Detail::Shape, progress)
+    read_detail(args, Detail::Shape, &[], progress)
 }
 
-/// Reads and checks a mesh with what it has besides the shape.
-pub(crate) fn read_detail(args: &MeshArgs, detail: Detail, progress: &dyn Progress) -> anyhow::Result<Input> {
+/// Reads and checks a mesh, or `only` some of its faces, with what it has besides the shape.
+pub(crate) fn read_detail(
+    args: &MeshArgs,
+    detail: Detail,
+    only: &[OnlyArg],
+    progress: &dyn Progress,
+) -> anyhow::Result<Input> {
     let stdin = args.mesh.as_os_str() == "-";
     let name = if stdin { "stdin".to_owned() } else { args.mesh.display().to_string() };
     progress.begin("read", 1);
@@ -40,12 +45,49 @@ pub(crate) fn read_detail(args: &MeshArgs, detail: Detail, progress: &dyn Progre
         Some(format) => read_model_as(format.into(), &bytes, detail, &resolver),
         None => read_model(&bytes, Some(&name), detail, &resolver),
     };
-    let Model { soup, attributes } = model.with_context(|| name.clone())?;
+    let mut model = model.with_context(|| name.clone())?;
+    if !only.is_empty() {
+        select(&mut model, only).with_context(|| name.clone())?;
+    }
+    let Model { soup, attributes } = model;
     drop(bytes);
     progress.begin("check", 1);
     let options = CheckOptions { turn_outward: !args.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
     Ok(Input { name, soup, mesh, repaired, attributes })
+}
+
+/// Keeps the faces that have one of the names.
+fn select(model: &mut Model, only: &[OnlyArg]) -> anyhow::Result<()> {
+    let attributes = &model.attributes;
+    let mut keep = vec![false; model.soup.polygon_count()];
+    for wanted in only {
+        let (what, name, names) = match wanted {
+            OnlyArg::Material(name) => ("material", name, &attributes.material_of),
+            OnlyArg::Part(name) => ("part", name, &attributes.parts),
+        };
+        let mut found = false;
+        for (polygon, keep) in keep.iter_mut().enumerate() {
+            // Several may have the same name.
+            if names.get(polygon).is_some_and(|index| names.names()[index] == *name) {
+                (*keep, found) = (true, true);
+            }
+        }
+        if !found {
+            const MOST: usize = 10;
+            let known: Vec<&str> = names.names().iter().take(MOST).map(String::as_str).collect();
+            return Err(match (known.is_empty(), names.names().len() > MOST) {
+                (true, _) => anyhow!("no face has a {what}: leave --only out"),
+                (false, more) => anyhow!(
+                    "no face has the {what} {name:?}: there are {}{}",
+                    known.join(", "),
+                    if more { ", ..." } else { "" }
+                ),
+            });
+        }
+    }
+    model.retain(|polygon| keep[polygon]);
+    Ok(())
 }
 
 impl From<MeshFormatArg> for MeshFormat {

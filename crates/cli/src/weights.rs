@@ -1,18 +1,69 @@
-//! Weights of a mesh from a text file.
+//! Weights of a mesh from a text file, or from what the mesh file has itself.
 
 use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
+use glam::{DVec3, DVec4, Vec4Swizzles};
+use ldwrap::SurfacePoint;
+use ldwrap::attributes::Places;
 use ldwrap::density::Density;
+use ldwrap::io::Detail;
+use ldwrap::io::points::Attribute;
 
-use crate::args::{WeightsArgs, WeightsOf};
+use crate::args::{WeightsArgs, WeightsBy, WeightsOf};
 use crate::input::Input;
 
 /// The density that the arguments ask for on the mesh.
 pub(crate) fn density(args: &WeightsArgs, input: &Input) -> anyhow::Result<Density> {
+    if let Some(by) = &args.weights_by {
+        return by_attribute(by, input).with_context(|| input.name.clone());
+    }
     let Some(path) = &args.weights else { return Ok(Density::UNIFORM) };
     read(args.weights_of, path, input).with_context(|| path.display().to_string())
+}
+
+/// How much of the mesh file must be read for the weights.
+pub(crate) fn detail(args: &WeightsArgs) -> Detail {
+    match &args.weights_by {
+        None => Detail::Shape,
+        Some(WeightsBy::Property(_)) => Detail::Attributes,
+        Some(_) => Detail::Textures,
+    }
+}
+
+/// The values at the corners of the triangles.
+fn by_attribute(by: &WeightsBy, input: &Input) -> anyhow::Result<Density> {
+    let Input { mesh, attributes, .. } = input;
+    let places = Places::new(mesh, attributes);
+    let color = |point: &SurfacePoint| places.color(mesh, point).unwrap_or(DVec4::ZERO);
+    let needed = match by {
+        WeightsBy::Property(name) => Attribute::Number(name.clone()),
+        _ => Attribute::Color,
+    };
+    if !needed.is_in(attributes) {
+        return Err(anyhow!("the mesh has no {needed}: leave --weights-by out, or give --weights FILE"));
+    }
+    let number = match by {
+        WeightsBy::Property(name) => attributes.numbers.iter().position(|(known, _)| known == name),
+        _ => None,
+    };
+    let value = |point: &SurfacePoint| match by {
+        WeightsBy::Red => color(point).x,
+        WeightsBy::Green => color(point).y,
+        WeightsBy::Blue => color(point).z,
+        // ITU-R BT.709, whose primaries sRGB has.
+        WeightsBy::Luminance => color(point).xyz().dot(DVec3::new(0.2126, 0.7152, 0.0722)),
+        WeightsBy::Alpha => color(point).w,
+        WeightsBy::Property(_) => number.and_then(|n| places.number(mesh, point, n)).unwrap_or(0.0),
+    };
+    let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let weights: Vec<[f64; 3]> = mesh
+        .topology()
+        .face_ids()
+        .map(|face| corners.map(|barycentric| value(&SurfacePoint { face, barycentric })))
+        .collect();
+    Ok(Density::of_corners(mesh, &weights)?)
 }
 
 fn read(of: Option<WeightsOf>, path: &Path, input: &Input) -> anyhow::Result<Density> {

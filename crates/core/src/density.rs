@@ -96,6 +96,15 @@ impl Density {
         Self::scaled(mesh, mesh.sources().iter().map(|s| s.corners.map(weight)).collect())
     }
 
+    /// A weight for each corner of each face of the mesh, linear between them; neighbours need not agree. Linear time.
+    ///
+    /// # Errors
+    /// As [`of_faces`](Self::of_faces).
+    pub fn of_corners(mesh: &SurfaceMesh, weights: &[[f64; 3]]) -> Result<Self, DensityError> {
+        check(weights.as_flattened(), 3 * mesh.face_count(), ["corner", "corners"])?;
+        Self::scaled(mesh, weights.to_vec())
+    }
+
     fn scaled(mesh: &SurfaceMesh, mut corners: Vec<[f64; 3]>) -> Result<Self, DensityError> {
         let largest = corners.iter().flatten().fold(0.0_f64, |m, &w| m.max(w));
         if largest == 0.0 {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context;
 use ldwrap::correct::Correction;
 use ldwrap::density::Density;
+use ldwrap::io::Detail;
 use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{self, Options, Run};
 use ldwrap::{Progress, SurfacePoint};
@@ -27,8 +28,10 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     let options = job::options(args)?;
     let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
     let stages = Stages::new(quiet);
-    let detail = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
-    let input = input::read_detail(&args.mesh, detail, &stages)?;
+    let carried = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
+    let selecting = if args.only.is_empty() { Detail::Shape } else { Detail::Attributes };
+    let detail = carried.max(selecting).max(weights::detail(&args.weights));
+    let input = input::read_detail(&args.mesh, detail, &args.only, &stages)?;
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }

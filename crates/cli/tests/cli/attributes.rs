@@ -70,10 +70,9 @@ fn points_of_a_textured_square() {
         assert_eq!(words[3..8], [&r.to_string(), &g.to_string(), &b.to_string(), "255", "paint"], "{line}");
         let quad = usize::from(x >= 1.0) + 2 * usize::from(y >= 1.0);
         assert_eq!((words[8], words[11]), (&*format!("quad{quad}"), &*quad.to_string()), "{line}");
-        assert_eq!(
-            (number(9), number(10)),
-            (0.25 + 0.5 * f64::from(x >= 1.0), 0.25 + 0.5 * f64::from(y >= 1.0))
-        );
+        // Weighted with barycentric coordinates, whose sum is 1 to rounding.
+        let uv = [x, y].map(|place| 0.25 + 0.5 * f64::from(place >= 1.0));
+        assert!((number(9) - uv[0]).abs() < 1e-15 && (number(10) - uv[1]).abs() < 1e-15, "{line}");
         area += number(12);
         quads[quad] += 1;
     }
@@ -124,8 +123,47 @@ fn all_that_there_is_in_every_format() {
     folder.run("wrap square.obj -n 30 -q -o p.json --attributes all").ok();
     let json = folder.json("p.json");
     let keys: Vec<&String> = json[0].as_object().expect("a point").keys().collect();
-    assert_eq!(keys.len(), 15, "{keys:?}");
+    assert_eq!(keys.len(), 14, "{keys:?}");
     assert_eq!((&json[0]["material"], &json[0]["normal"][2]), (&"paint".into(), &1.0.into()));
+}
+
+#[test]
+fn only_some_materials_and_parts() {
+    let folder = textured();
+    folder
+        .run(
+            "wrap square.obj -n 40 -q -o p.csv --attributes part,polygon --only part:quad1 --only part:quad2",
+        )
+        .ok();
+    let text = folder.text("p.csv");
+    let of = |end: &str| text.lines().filter(|line| line.ends_with(end)).count();
+    assert_eq!((of("quad1,1"), of("quad2,2"), text.lines().count()), (20, 20, 41));
+    folder
+        .run("wrap square.obj -n 40 -o p.csv --only part:quad9")
+        .failed(&["part \"quad9\"", "quad0, quad1, quad2"]);
+    folder.run("wrap square.obj -o p.csv --only quad1").refused(&["material:NAME or part:NAME"]);
+}
+
+#[test]
+fn weights_by_color_and_property() {
+    let folder = textured();
+    // Blue is in one quad, and in the white one: half of the square, evenly.
+    folder.run("wrap square.obj -n 100 -q -o p.csv --attributes part --weights-by blue").ok();
+    let text = folder.text("p.csv");
+    let of = |end: &str| text.lines().filter(|line| line.ends_with(end)).count();
+    assert_eq!(of("quad2") + of("quad3"), 0);
+    assert!((49..=51).contains(&of("quad0")), "{}", of("quad0"));
+    // A property that grows from 0 to 1 along x: the mean of x is 2/3.
+    let head = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                property float heat\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    folder.write("heat.ply", format!("{head}0 0 0 0\n1 0 0 1\n1 1 0 1\n0 1 0 0\n4 0 1 2 3\n"));
+    folder.run("wrap heat.ply -n 400 -q -o p.csv --weights-by property:heat --attributes property:heat").ok();
+    let text = folder.text("p.csv");
+    let heat: Vec<f64> =
+        text.lines().skip(1).map(|l| l.rsplit(',').next().unwrap_or("").parse().expect("heat")).collect();
+    let mean = heat.iter().sum::<f64>() / heat.len() as f64;
+    assert!((mean - 2.0 / 3.0).abs() < 0.01, "{mean}");
+    folder.run("wrap heat.ply -q -o p.csv --weights-by red").failed(&["heat.ply", "has no color"]);
 }
 
 #[test]

@@ -76,6 +76,12 @@ impl<T: Copy> CornerValues<T> {
         self.values.get(index).copied()
     }
 
+    /// Keeps what these corners refer to, in this order.
+    pub(super) fn select(&mut self, corners: &[usize]) {
+        self.of_corner =
+            corners.iter().map(|&c| self.of_corner.get(c).copied().unwrap_or(Link::NONE)).collect();
+    }
+
     /// The values of a triangle's corners weighted with barycentric coordinates; `None` if one of them has none.
     pub fn at(&self, corners: [u32; 3], barycentric: [f64; 3]) -> Option<T>
     where
@@ -118,6 +124,12 @@ impl PolygonNames {
             self.of_polygon.resize(polygons.end, Link::NONE);
         }
         self.of_polygon[polygons].fill(index.map_or(Link::NONE, Link::new));
+    }
+
+    /// Keeps the names of these polygons, in this order.
+    pub(super) fn select(&mut self, polygons: &[usize]) {
+        self.of_polygon =
+            polygons.iter().map(|&p| self.of_polygon.get(p).copied().unwrap_or(Link::NONE)).collect();
     }
 
     /// The index of a name, which is added if it is new.

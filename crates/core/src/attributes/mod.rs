@@ -42,4 +42,28 @@ pub struct MeshAttributes {
     pub images: Vec<Image>,
     /// The part that each polygon belongs to: node, object, group or solid, as the format calls it.
     pub parts: PolygonNames,
+    /// The numbers in the file of the polygons, where only some were kept.
+    pub kept: Option<Vec<u32>>,
+}
+
+impl MeshAttributes {
+    /// Keeps what belongs to these polygons and corners, in this order.
+    pub(crate) fn select(&mut self, polygons: &[usize], corners: &[usize]) {
+        self.normals.select(corners);
+        self.colors.select(corners);
+        self.uv.iter_mut().for_each(|uv| uv.select(corners));
+        self.numbers.iter_mut().for_each(|(_, numbers)| numbers.select(corners));
+        self.material_of.select(polygons);
+        self.parts.select(polygons);
+        let number = |&polygon: &usize| match &self.kept {
+            Some(kept) => kept.get(polygon).copied().unwrap_or_default(),
+            None => polygon as u32,
+        };
+        self.kept = Some(polygons.iter().map(number).collect());
+    }
+
+    /// The number in the file of a polygon.
+    pub fn polygon_number(&self, polygon: crate::PolygonId) -> u32 {
+        self.kept.as_ref().and_then(|kept| kept.get(polygon.index()).copied()).unwrap_or(polygon.0)
+    }
 }

@@ -13,6 +13,7 @@ pub mod ply;
 #[cfg(feature = "io")]
 pub mod points;
 mod read;
+mod select;
 #[cfg(feature = "stl")]
 pub mod stl;
 

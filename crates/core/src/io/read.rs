@@ -214,7 +214,11 @@ fn foreign(bytes: &[u8]) -> ReadError {
         (b"Kaydara FBX Binary", "FBX", CONVERT),
         (b"; FBX", "FBX", CONVERT),
         (b"BLENDER", "a Blender file", "export it to OBJ, glTF, GLB, PLY or STL"),
-        (b"PK\x03\x04", "a ZIP archive (as 3MF and USDZ are)", "unpack or convert it"),
+        (
+            b"PK\x03\x04",
+            "a ZIP archive (as 3MF and USDZ are)",
+            "unpack it, or convert it to OBJ, glTF, GLB, PLY, STL or OFF",
+        ),
         (b"ISO-10303-21", "STEP", CONVERT),
         (b"#usda", "USD", CONVERT),
         (b"PXR-USDC", "USD", CONVERT),

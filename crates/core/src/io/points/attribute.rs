@@ -219,7 +219,8 @@ impl Gathering<'_> {
                 names("part", attributes.parts.names(), ids)
             }
             Attribute::Face => self.ids("face", |s| s.point.face.0),
-            Attribute::Polygon => self.ids("polygon", |s| mesh.sources()[s.point.face.index()].polygon.0),
+            Attribute::Polygon => self
+                .ids("polygon", |s| attributes.polygon_number(mesh.sources()[s.point.face.index()].polygon)),
             Attribute::Barycentric => {
                 self.reals("barycentric", &["b0", "b1", "b2"], Precision::Double, |p| p.barycentric)
             }
