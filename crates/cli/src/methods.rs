@@ -4,7 +4,8 @@ use anyhow::anyhow;
 use clap::ValueEnum;
 use ldwrap::baseline::Baseline;
 use ldwrap::equalize::{EqualizeOptions, ForViews};
-use ldwrap::pipeline::{self, Options, Request};
+use ldwrap::pipeline::{self, Options, Request, Selection};
+use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::{Progress, SurfaceMesh, SurfacePoint};
 
 /// A way to make points.
@@ -12,7 +13,9 @@ use ldwrap::{Progress, SurfaceMesh, SurfacePoint};
 pub(crate) enum Method {
     /// Segment, unfold, wrap, correct, and choose one point in each region of equal area
     Wrap,
-    /// The same, then equalized
+    /// The paper's own: segments grow along their boundary, points along the sequence
+    Paper,
+    /// As wrap, then equalized
     Equalize,
     /// Equalized, then placed for views
     ForViews,
@@ -30,8 +33,9 @@ pub(crate) enum Method {
 
 impl Method {
     /// All of them.
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::Wrap,
+        Self::Paper,
         Self::Equalize,
         Self::ForViews,
         Self::Random,
@@ -52,9 +56,13 @@ impl Method {
         match self {
             Self::SphereHammersley => sphere(Baseline::SphereHammersley),
             Self::SphereFibonacci => sphere(Baseline::SphereFibonacci),
-            Self::Wrap | Self::Equalize | Self::ForViews | Self::Random | Self::Hilbert | Self::Poisson => {
-                true
-            }
+            Self::Wrap
+            | Self::Paper
+            | Self::Equalize
+            | Self::ForViews
+            | Self::Random
+            | Self::Hilbert
+            | Self::Poisson => true,
         }
     }
 
@@ -67,17 +75,22 @@ impl Method {
         options: &Options,
         progress: &dyn Progress,
     ) -> anyhow::Result<Vec<SurfacePoint>> {
-        let wrapped = |equalize| {
+        let wrapped_by = |options: &Options, equalize| {
             let options = Options { request: Request::Count(count), seed, equalize, ..*options };
             let run = pipeline::run(mesh, &options, progress)?;
             anyhow::Ok(run.samples.iter().map(|sample| sample.point).collect())
         };
+        let wrapped = |equalize| wrapped_by(options, equalize);
         let baseline = |baseline: Baseline| {
             progress.begin("place", 1);
             baseline.place(mesh, count, seed).map_err(|error| anyhow!(error))
         };
         match self {
             Self::Wrap => wrapped(None),
+            Self::Paper => {
+                let segment = SegmentOptions { order: GrowthOrder::BoundaryWalk, ..options.segment };
+                wrapped_by(&Options { segment, selection: Selection::Sequence, ..*options }, None)
+            }
             Self::Equalize => wrapped(Some(EqualizeOptions::default())),
             Self::ForViews => {
                 let for_views = Some(ForViews { seed, ..ForViews::default() });

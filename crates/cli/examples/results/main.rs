@@ -6,6 +6,7 @@
 
 #[path = "../../src/bound.rs"]
 mod bound;
+mod fewer;
 mod object;
 mod parts;
 mod picture;
@@ -29,7 +30,7 @@ use object::{Object, Outcome, Way, checked};
 use quality::Judge;
 use report::Report;
 
-const OURS: &[Way] = &[Way::Walk, Way::Flattest, Way::Equalized];
+const OURS: &[Way] = &[Way::Walk, Way::Wrap, Way::Equalized];
 
 const SPHERE: Object = Object {
     stem: "figure4-sphere",
@@ -39,7 +40,7 @@ const SPHERE: Object = Object {
     paper: &[(192, Some(1.32)), (770, Some(0.95))],
     ways: &[
         Way::Walk,
-        Way::Flattest,
+        Way::Wrap,
         Way::Equalized,
         Way::Baseline(Baseline::SphereHammersley),
         Way::Baseline(Baseline::SphereFibonacci),
@@ -85,7 +86,7 @@ const HORSE: Object = Object {
 /// All methods that work on any mesh.
 const ALL: &[Way] = &[
     Way::Walk,
-    Way::Flattest,
+    Way::Wrap,
     Way::Equalized,
     Way::Baseline(Baseline::Random),
     Way::Baseline(Baseline::Hilbert),
@@ -124,6 +125,7 @@ fn main() -> Outcome {
         Some(mesh) => horse(&mut report, &mesh)?,
         None => report.say("**Skipped: figure 7 and all methods on the horse, its mesh was not there.**"),
     }
+    fewer::write(&mut report, &meshes)?;
     report.say(text::WHY);
     report.write()?;
     Ok(())

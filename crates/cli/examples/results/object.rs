@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use ldwrap::baseline::Baseline;
-use ldwrap::equalize::EqualizeOptions;
+use ldwrap::equalize::{EqualizeOptions, ForViews};
 use ldwrap::io::read_mesh;
 use ldwrap::pipeline::{self, Options, Request, Run, Selection};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
@@ -26,10 +26,12 @@ const DRAWN_AS_LINES: usize = 2_000;
 pub(crate) enum Way {
     /// The paper's: segments grow along their boundary, first in, first out.
     Walk,
-    /// The default order of growth.
-    Flattest,
+    /// What the program does under `--no-equalize`.
+    Wrap,
     /// The default, then equalized.
     Equalized,
+    /// Equalized, then placed for views.
+    ForViews,
     Baseline(Baseline),
 }
 
@@ -37,8 +39,9 @@ impl Way {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Walk => "wrap, paper's order",
-            Self::Flattest => "wrap, not equalized",
+            Self::Wrap => "wrap, not equalized",
             Self::Equalized => "equalized (default)",
+            Self::ForViews => "for views",
             Self::Baseline(baseline) => baseline.name(),
         }
     }
@@ -67,7 +70,14 @@ pub(crate) fn wrapped(mesh: &SurfaceMesh, way: Way, count: usize, seed: u64) -> 
         segment: SegmentOptions { order, ..SegmentOptions::default() },
         seed,
         selection: if way == Way::Walk { Selection::Sequence } else { Selection::default() },
-        equalize: (way == Way::Equalized).then(EqualizeOptions::default),
+        equalize: match way {
+            Way::Equalized => Some(EqualizeOptions::default()),
+            Way::ForViews => {
+                let for_views = Some(ForViews { seed, ..ForViews::default() });
+                Some(EqualizeOptions { for_views, ..EqualizeOptions::default() })
+            }
+            Way::Walk | Way::Wrap | Way::Baseline(_) => None,
+        },
         ..Options::default()
     };
     Ok(pipeline::run(mesh, &options, &Silent)?)
@@ -120,7 +130,7 @@ pub(crate) fn write(report: &mut Report, mesh: &SurfaceMesh, object: &Object) ->
         strips.map_or(String::new(), |s| format!(" Strips in the paper: {s}.")),
     ));
     let mut rows = Vec::new();
-    for way in [Way::Walk, Way::Flattest] {
+    for way in [Way::Walk, Way::Wrap] {
         for &(count, wanted) in paper {
             let run = wrapped(mesh, way, count, 0)?;
             if way == Way::Walk {
@@ -136,7 +146,7 @@ pub(crate) fn write(report: &mut Report, mesh: &SurfaceMesh, object: &Object) ->
             rows.push(row);
         }
     }
-    for &way in ways.iter().filter(|&&way| way != Way::Walk && way != Way::Flattest) {
+    for &way in ways.iter().filter(|&&way| way != Way::Walk && way != Way::Wrap) {
         for &(count, _) in paper.iter().filter(|_| pictured(way)) {
             let samples = on_one_strip(&way.place(mesh, count, 0)?.0);
             let run = wrapped(mesh, Way::Walk, count, 0)?;

@@ -157,7 +157,7 @@ pub(crate) fn write(report: &mut Report) -> object::Outcome {
     let picture = report.image("figure2-parts.svg", svg.as_bytes())?;
     report.say(&format!("![Three sample figures on the sphere and in the plane]({picture})"));
     let mut rows = Vec::new();
-    for way in [Way::Walk, Way::Flattest] {
+    for way in [Way::Walk, Way::Wrap] {
         for count in [192, 770, 10_000] {
             let run = object::wrapped(&mesh, way, count, 0)?;
             let mut row = vec![way.name().to_owned()];
@@ -168,8 +168,7 @@ pub(crate) fn write(report: &mut Report) -> object::Outcome {
     let mut head = vec!["sphere, wrapped"];
     head.extend(bound::HEAD);
     report.table(&head, &rows);
-    report
-        .say("`ldwrap-cli bound sphere.obj -n 192,770,10000 --growth boundary-walk` (or `flattest-first`).");
+    report.say("`ldwrap-cli bound sphere.obj -n 192,770,10000 --growth boundary-walk` (or without it).");
     report.say(
         "R1 and R2 fall into one and two parts, R3 is the figure of at most half the sphere that falls into most; \
          cuts narrower than 0.1 d_m at n = 192 count as joined. The paper's own figure has f_d = 39 parts \

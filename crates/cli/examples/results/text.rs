@@ -7,4 +7,5 @@ pub(crate) const DRINK: &str = include_str!("text/drink.md");
 pub(crate) const DRINK_LIKE: &str = include_str!("text/drink-like.md");
 pub(crate) const HORSE: &str = include_str!("text/horse.md");
 pub(crate) const ALL: &str = include_str!("text/all.md");
+pub(crate) const FEWER: &str = include_str!("text/fewer.md");
 pub(crate) const WHY: &str = include_str!("text/why.md");

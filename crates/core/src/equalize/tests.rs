@@ -213,7 +213,8 @@ fn places_serve_the_cameras_that_were_asked_for() {
             let (right, up) = toward.normalize().any_orthonormal_pair();
             let from = toward.normalize() + (right * cos + up * sin) * tilt;
             let seen = points.iter().filter(|p| sphere.face_normal(p.face).dot(from) > 0.0).count();
-            sum += (seen as f64 / points.len() as f64 - 0.5).powi(2);
+            let error = seen as f64 / points.len() as f64 - 0.5;
+            sum += error * error;
         }
         (sum / 40.0).sqrt()
     };
