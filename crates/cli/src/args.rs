@@ -33,7 +33,7 @@ pub(crate) struct CommandLine {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Spread points over a mesh
-    Wrap(WrapArgs),
+    Wrap(Box<WrapArgs>),
     /// Draw how a mesh is segmented and unfolded, without points
     Strips(StripsArgs),
     /// Tell what a mesh is: counts, area, components, borders, what was repaired

@@ -28,7 +28,7 @@ pub(crate) fn bytes(input: &Input, samples: &[Sample], wanted: &PointOutput) -> 
         Carried::Named(names) => names.clone(),
         Carried::All => {
             let numbers = attributes.numbers.iter().map(|(name, _)| Attribute::Number(name.clone()));
-            let all = Attribute::FIXED.into_iter().chain(numbers.filter(|number| is_other(number)));
+            let all = Attribute::FIXED.into_iter().chain(numbers.filter(is_other));
             all.filter(|one| one.is_in(attributes) && one.fits(wanted.format)).collect()
         }
     };
