@@ -12,7 +12,7 @@
 mod color;
 mod corners;
 mod place;
-#[cfg(test)]
+#[cfg(all(test, feature = "io"))]
 mod tests;
 mod texture;
 

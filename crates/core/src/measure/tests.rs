@@ -4,8 +4,8 @@ use glam::{DQuat, DVec3};
 
 use crate::measure::testmesh::{self, random_points};
 use crate::measure::{
-    BallReport, ComponentReport, EnergyReport, HalfSpaceReport, IntegrationReport, Norms, PatchOptions,
-    SpacingReport, ViewOptions, ball, components, energy, half_space, integration, patch, spacing, view,
+    BallReport, ComponentReport, EnergyReport, HalfSpaceReport, IntegrationReport, Norms, SpacingReport,
+    ball, components, energy, half_space, integration, patch, spacing, view,
 };
 use crate::mesh::SurfaceMesh;
 use crate::progress::Silent;
@@ -54,8 +54,8 @@ fn same_bits_twice_and_with_any_number_of_threads() {
     let points = random_points(&mesh, 3000, 1);
     let joints = Joints::of(&mesh, &unfold(&mesh, &segment(&mesh, &SegmentOptions::default())), 1e-3);
     let places: Vec<DVec2> = (0..3000).map(|i| Sequence::R2.point(i, 3000)).collect();
-    let views = ViewOptions { views: 12, nodes: 4000, ..ViewOptions::default() };
-    let patches = PatchOptions { seeds: 20, seed: 0 };
+    let views = super::ViewOptions { views: 12, nodes: 4000, ..super::ViewOptions::default() };
+    let patches = super::PatchOptions { seeds: 20, seed: 0 };
     let every = || {
         (
             measure(&mesh, &points),
