@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec3;
 use ldwrap::io::points::{Attribute, PointFormat};
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::shapes::Shape;
@@ -225,6 +226,20 @@ pub(crate) struct WrapArgs {
     pub(crate) outputs: WrapOutputArgs,
 }
 
+/// Three finite numbers, not all 0.
+fn direction(text: &str) -> Result<DVec3, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse::<f64>()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() && [x, y, z] != [0.0; 3] => {
+            Ok(DVec3::new(x, y, z))
+        }
+        _ => {
+            Err("three finite numbers with commas between, not all 0, are needed, such as 0,-1,0.5"
+                .to_owned())
+        }
+    }
+}
+
 /// Points that tell the visible share.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Views")]
@@ -234,15 +249,8 @@ pub(crate) struct ForViewsArgs {
     #[arg(long, conflicts_with = "no_equalize")]
     pub(crate) for_views: bool,
     /// The views to serve come from around this direction, from the mesh to the camera [default: from everywhere]
-    #[arg(
-        long,
-        value_name = "X,Y,Z",
-        requires = "for_views",
-        value_delimiter = ',',
-        num_args = 3,
-        allow_negative_numbers = true
-    )]
-    pub(crate) view_from: Option<Vec<f64>>,
+    #[arg(long, value_name = "X,Y,Z", requires = "for_views", value_parser = direction, allow_hyphen_values = true)]
+    pub(crate) view_from: Option<DVec3>,
     /// They come from within this many degrees of it
     #[arg(long, value_name = "DEGREES", requires = "view_from", default_value = "30")]
     pub(crate) view_angle: f64,

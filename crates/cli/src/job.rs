@@ -3,7 +3,6 @@
 use std::ops::RangeInclusive;
 use std::path::Path;
 
-use glam::DVec3;
 use ldwrap::equalize::{Cameras, EqualizeOptions, ForViews};
 use ldwrap::io::Detail;
 use ldwrap::io::points::{Attribute, PointFormat};
@@ -159,14 +158,11 @@ pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
 }
 
 fn for_views(args: &ForViewsArgs) -> Option<ForViews> {
-    let cameras = match args.view_from.as_deref() {
-        Some(&[x, y, z]) => Cameras::Cone {
-            toward: DVec3::new(x, y, z),
-            angle: args.view_angle.to_radians(),
-            distance: args.view_distance,
-        },
-        _ => Cameras::Around,
-    };
+    let cameras = args.view_from.map_or(Cameras::Around, |toward| Cameras::Cone {
+        toward,
+        angle: args.view_angle.to_radians(),
+        distance: args.view_distance,
+    });
     args.for_views.then(|| ForViews { cameras, views: args.views, ..ForViews::default() })
 }
 

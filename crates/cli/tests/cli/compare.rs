@@ -61,7 +61,7 @@ fn every_method_on_a_sphere_and_only_those_that_suit_elsewhere() {
         let rows = report["table"].as_array().expect("a list").clone();
         rows.iter().map(|row| row["method"].as_str().expect("a name").to_owned()).collect::<Vec<_>>()
     };
-    let everywhere = ["wrap", "equalize", "random", "hilbert", "poisson"];
+    let everywhere = ["wrap", "paper", "equalize", "random", "hilbert", "poisson"];
     folder.run("shape cube -o cube.ply -q").ok();
     assert_eq!(methods("cube.ply"), everywhere);
     assert_eq!(methods("sphere.ply"), [&everywhere[..], &["sphere-hammersley", "sphere-fibonacci"]].concat());
