@@ -58,6 +58,7 @@ pub mod density;
 pub mod domain;
 pub mod equalize;
 pub mod geometry;
+mod halves;
 mod ids;
 pub mod io;
 pub mod irregularity;

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::correct::Corrected;
 use crate::density::Density;
+use crate::halves::split_by_mass;
 use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
@@ -162,7 +163,8 @@ fn cut(items: &mut [Item], start: f64) {
     let high = items.iter().fold(DVec3::NEG_INFINITY, |m, i| m.max(i.position));
     let extent = high - low;
     let axis = (1..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
-    let middle = split_by_mass(items, axis, border - start);
+    let order = |a: &Item, b: &Item| a.position[axis].total_cmp(&b.position[axis]).then(a.face.cmp(&b.face));
+    let middle = split_by_mass(items, order, |item| item.mass, border - start);
     let (below, above) = items.split_at_mut(middle);
     let between = start + below.iter().map(|i| i.mass).sum::<f64>();
     #[cfg(feature = "parallel")]
@@ -176,28 +178,6 @@ fn cut(items: &mut [Item], start: f64) {
     }
     cut(below, start);
     cut(above, between);
-}
-
-/// Reorders the items so that those before the returned place are the lowest along the axis and their mass is as near
-/// to `wanted` as whole items allow. Neither side is empty.
-fn split_by_mass(items: &mut [Item], axis: usize, wanted: f64) -> usize {
-    let order = |a: &Item, b: &Item| a.position[axis].total_cmp(&b.position[axis]).then(a.face.cmp(&b.face));
-    let (mut low, mut high) = (0, items.len());
-    let mut below = 0.0;
-    // Items before `low` are lower, items from `high` on are higher; `below` is the mass before `low`.
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        items[low..high].select_nth_unstable_by(middle - low, order);
-        let mass: f64 = items[low..middle].iter().map(|i| i.mass).sum();
-        if below + mass <= wanted {
-            below += mass;
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let behind = wanted - below > 0.5 * items[low].mass;
-    (low + usize::from(behind)).clamp(1, items.len() - 1)
 }
 
 #[cfg(test)]

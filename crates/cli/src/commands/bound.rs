@@ -24,14 +24,14 @@ struct BoundReport<'a> {
 /// Runs the command.
 pub(crate) fn run(args: &BoundArgs, quiet: bool) -> Outcome {
     let options = job::wrap_options(&args.segment, &args.sequence)?;
-    job::refuse_repeated("--count", &args.counts, u32::to_string)?;
+    job::refuse_repeated("--count", &args.table.counts, u32::to_string)?;
     let stages = Stages::new(quiet);
     let Input { name, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
     for note in input::notes(&repaired) {
         stages.say(&format!("note: {name}: {note}"));
     }
     let mut bounds = Vec::new();
-    for &count in &args.counts {
+    for &count in &args.table.counts {
         stages.prefix(&format!("n={count}: "));
         let options = Options { request: Request::Count(count as usize), ..options };
         let run = pipeline::run(&mesh, &options, &stages).with_context(|| format!("{name}, n = {count}"))?;

@@ -105,7 +105,7 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
 
 /// Every row of the table must be one set of points at one number: nothing is named twice.
 fn check_names(args: &CompareArgs) -> Outcome {
-    job::refuse_repeated("--count", &args.counts, u32::to_string)?;
+    job::refuse_repeated("--count", &args.table.counts, u32::to_string)?;
     job::refuse_repeated("--methods", args.methods.as_deref().unwrap_or_default(), |m| m.name())?;
     let names: Vec<&str> = args.points.iter().map(|points| points.name.as_str()).collect();
     job::refuse_repeated("--points", &names, |name| format!("the name {name}"))?;
@@ -176,7 +176,7 @@ fn placed(
     stages: &Stages,
 ) -> anyhow::Result<Vec<Candidate>> {
     let mut candidates = Vec::new();
-    for &count in &args.counts {
+    for &count in &args.table.counts {
         for &method in methods {
             for seed in seeds.clone() {
                 let method_name = method.name();

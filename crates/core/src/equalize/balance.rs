@@ -5,6 +5,8 @@ use std::ops::Range;
 
 use glam::DVec3;
 
+use crate::halves::split_by_mass;
+
 /// A clump of clumps or a point in the space of positions and scaled normals.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
@@ -56,10 +58,10 @@ fn share(clumps: &mut [Item], points: &mut [Item], starts: [usize; 2], regions: 
     let axis = widest_axis(clumps);
     let lower = points.len() / 2;
     let total: f64 = clumps.iter().map(|t| t.mass).sum();
-    let cut = split_by_mass(clumps, axis, total * lower as f64 / points.len() as f64);
-    points.select_nth_unstable_by(lower, |a, b| {
-        a.coordinate(axis).total_cmp(&b.coordinate(axis)).then(a.id.cmp(&b.id))
-    });
+    let order = |a: &Item, b: &Item| a.coordinate(axis).total_cmp(&b.coordinate(axis)).then(a.id.cmp(&b.id));
+    let wanted = total * lower as f64 / points.len() as f64;
+    let cut = split_by_mass(clumps, order, |clump| clump.mass, wanted);
+    points.select_nth_unstable_by(lower, order);
     let (clumps_below, clumps_above) = clumps.split_at_mut(cut);
     let (points_below, points_above) = points.split_at_mut(lower);
     let behind = [starts[0] + cut, starts[1] + lower];
@@ -86,27 +88,4 @@ fn widest_axis(items: &[Item]) -> usize {
     }
     let extent = |axis: usize| (high[axis / 3] - low[axis / 3])[axis % 3];
     (0..6).fold(0, |best, axis| if extent(axis) > extent(best) { axis } else { best })
-}
-
-/// Reorders the items so that those before the returned place are the ones lowest along the axis and their mass is
-/// as near to `wanted` as whole items allow. Neither side is empty.
-fn split_by_mass(items: &mut [Item], axis: usize, wanted: f64) -> usize {
-    let order = |a: &Item, b: &Item| a.coordinate(axis).total_cmp(&b.coordinate(axis)).then(a.id.cmp(&b.id));
-    let (mut low, mut high) = (0, items.len());
-    let mut below = 0.0;
-    // Items before `low` are lower, items from `high` on are higher; `below` is the mass before `low`.
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        items[low..high].select_nth_unstable_by(middle - low, order);
-        let mass: f64 = items[low..middle].iter().map(|t| t.mass).sum();
-        if below + mass <= wanted {
-            below += mass;
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    // The cut falls before or behind the item at `low`.
-    let behind = wanted - below > 0.5 * items[low].mass;
-    (low + usize::from(behind)).clamp(1, items.len() - 1)
 }
