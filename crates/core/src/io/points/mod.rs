@@ -246,7 +246,7 @@ pub enum PointsError {
 /// - XYZ: the first three numbers of each line, between spaces, commas or semicolons; `#` and `//` start comments; a first
 ///   line with the count alone, as in PTS files, is skipped;
 /// - CSV: the columns x, y, z of the first line, or the first three columns;
-/// - NPY: float32 or float64, n rows of at least 3, either byte order, C or Fortran order;
+/// - NPY: float32, float64 or integers, n rows of at least 3, either byte order, C or Fortran order;
 /// - JSON: a list of points: `[x, y, z]`, `{"position": [x, y, z]}` or `{"x": x, "y": y, "z": z}`;
 /// - NPZ: the array `position`, `positions`, `points`, `xyz` or `vertices`, as NPY;
 /// - OBJ: the `v` lines;

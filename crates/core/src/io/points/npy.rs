@@ -40,8 +40,9 @@ pub(super) fn write_head(descr: &str, shape: &[usize], out: &mut dyn io::Write) 
 pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError> {
     let broken = |problem: &str| points.malformed(PointPlace::File, problem);
     let (head, data) = split(bytes).ok_or_else(|| broken("the head is cut off"))?;
-    let number = Number::from_name(value(head, "descr").unwrap_or_default())
-        .ok_or_else(|| broken("the numbers are neither float32 nor float64"))?;
+    let number = Number::from_name(value(head, "descr").unwrap_or_default()).ok_or_else(|| {
+        broken("the numbers are neither float32 or float64 nor integers: save them as float64")
+    })?;
     let fortran = match value(head, "fortran_order") {
         Some(order) if order.starts_with("True") => true,
         Some(order) if order.starts_with("False") => false,
@@ -55,7 +56,7 @@ pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError>
     if columns < 3 {
         return Err(broken(&format!("a point has {columns} coordinates instead of 3")));
     }
-    let needed = count.checked_mul(columns).and_then(|n| n.checked_mul(number.size() as u64));
+    let needed = count.checked_mul(columns).and_then(|n| n.checked_mul(number.size as u64));
     if needed.is_none_or(|needed| needed > data.len() as u64) {
         return Err(broken(&format!(
             "{count} x {columns} numbers are announced, but the file ends after {} bytes of them",
@@ -68,7 +69,7 @@ pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError>
     for row in 0..count {
         let at = |column: usize| {
             let index = if fortran { column * count + row } else { row * columns + column };
-            number.read(&data[index * number.size()..])
+            number.read(&data[index * number.size..])
         };
         points.push(DVec3::new(at(0), at(1), at(2)), PointPlace::Point(row))?;
     }
@@ -97,41 +98,50 @@ fn shape(value: &str) -> Option<Vec<u64>> {
     tuple.split(',').map(str::trim).filter(|n| !n.is_empty()).map(|n| n.parse().ok()).collect()
 }
 
+/// How a number is stored, as the head describes it: byte order, kind and size, such as `<f4`.
 #[derive(Clone, Copy)]
-enum Number {
-    SingleLittle,
-    SingleBig,
-    DoubleLittle,
-    DoubleBig,
+struct Number {
+    big_endian: bool,
+    kind: Kind,
+    size: usize,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Float,
+    Signed,
+    Unsigned,
 }
 
 impl Number {
     fn from_name(value: &str) -> Option<Self> {
-        let known = [
-            ("'<f4'", Self::SingleLittle),
-            ("'>f4'", Self::SingleBig),
-            ("'<f8'", Self::DoubleLittle),
-            ("'>f8'", Self::DoubleBig),
-        ];
-        known.into_iter().find(|(name, _)| value.starts_with(name)).map(|(_, number)| number)
-    }
-
-    fn size(self) -> usize {
-        match self {
-            Self::SingleLittle | Self::SingleBig => 4,
-            Self::DoubleLittle | Self::DoubleBig => 8,
-        }
+        let mut parts = value.strip_prefix('\'')?.split('\'').next()?.chars();
+        let big_endian = match parts.next()? {
+            '<' | '|' => false,
+            '>' => true,
+            _ => return None,
+        };
+        let (kind, sizes): (Kind, &[usize]) = match parts.next()? {
+            'f' => (Kind::Float, &[4, 8]),
+            'i' => (Kind::Signed, &[1, 2, 4, 8]),
+            'u' => (Kind::Unsigned, &[1, 2, 4, 8]),
+            _ => return None,
+        };
+        let size = parts.as_str().parse().ok().filter(|size| sizes.contains(size))?;
+        Some(Self { big_endian, kind, size })
     }
 
     /// The number at the start of `bytes`, which are enough.
     fn read(self, bytes: &[u8]) -> f64 {
-        let single: [u8; 4] = std::array::from_fn(|i| bytes[i]);
-        let double = || std::array::from_fn(|i| bytes[i]);
-        match self {
-            Self::SingleLittle => f64::from(f32::from_le_bytes(single)),
-            Self::SingleBig => f64::from(f32::from_be_bytes(single)),
-            Self::DoubleLittle => f64::from_le_bytes(double()),
-            Self::DoubleBig => f64::from_be_bytes(double()),
+        let join = |bits: u64, byte: &u8| (bits << 8) | u64::from(*byte);
+        let own = &bytes[..self.size];
+        let bits = if self.big_endian { own.iter().fold(0, join) } else { own.iter().rev().fold(0, join) };
+        match (self.kind, self.size) {
+            (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
+            (Kind::Float, _) => f64::from_bits(bits),
+            // Its sign is the highest bit of its own size.
+            (Kind::Signed, size) => ((bits << (64 - 8 * size)) as i64 >> (64 - 8 * size)) as f64,
+            (Kind::Unsigned, _) => bits as f64,
         }
     }
 }

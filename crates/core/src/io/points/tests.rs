@@ -284,6 +284,25 @@ fn npy_of_every_kind() {
 }
 
 #[test]
+fn npy_of_integers() {
+    let wide = [i64::from(i32::MIN), -1, 7].map(i64::to_be_bytes).concat();
+    for (descr, data, expected) in [
+        ("|u1", vec![0, 128, 255], [0.0, 128.0, 255.0]),
+        ("|i1", vec![0, 128, 255], [0.0, -128.0, -1.0]),
+        ("<i2", vec![254, 255, 0, 1, 2, 0], [-2.0, 256.0, 2.0]),
+        (">u4", vec![0, 0, 0, 1, 255, 255, 255, 255, 0, 1, 0, 0], [1.0, 4_294_967_295.0, 65536.0]),
+        (">i8", wide, [-2_147_483_648.0, -1.0, 7.0]),
+    ] {
+        let file = npy(1, descr, "False", "(1, 3)", &data);
+        assert_eq!(read_points(&file, "x"), Ok(vec![DVec3::from(expected)]), "{descr}");
+    }
+    for descr in ["<f2", "<i3", "=i4", "<i", "<c16", "|O", "<i44"] {
+        let refused = read_points(&npy(1, descr, "False", "(1, 3)", &[0; 48]), "x").unwrap_err().to_string();
+        assert!(refused.contains("save them as float64"), "{descr}: {refused}");
+    }
+}
+
+#[test]
 fn broken_files_tell_where() {
     let cases = [
         ("a.xyz", "1 2 3\n\n4 5\n", "xyz, line 3: 2 of the 3 coordinates of a point"),
