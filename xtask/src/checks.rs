@@ -38,6 +38,7 @@ pub fn run_all() -> Result<(), Failure> {
             "warnings",
         ]))
     })?;
+    step("features", features)?;
     let page = step("page", page)?;
     step("tests", || {
         let mut test = cargo();
@@ -67,6 +68,30 @@ pub fn run_all() -> Result<(), Failure> {
     }
     eprintln!("\nall checks hold");
     Ok(())
+}
+
+/// The library's features, each of which must compile alone.
+const FEATURES: [&str; 12] =
+    ["obj", "gltf", "ply", "stl", "csv", "json", "gz", "npz", "textures", "serde", "parallel", "rayon"];
+
+/// The library with each feature alone, and with none for wasm.
+fn features() -> Result<(), Failure> {
+    for feature in FEATURES {
+        run(cargo()
+            .args(["clippy", "-p", "ldwrap", "--no-default-features", "--features", feature])
+            .args(["--", "-D", "warnings"]))?;
+    }
+    match crate::toolchain::WasmToolchain::find() {
+        Ok(toolchain) => run(toolchain
+            .cargo_build()
+            .args(["-p", "ldwrap", "--no-default-features", "--target-dir"])
+            .arg(crate::target().join("wasm"))),
+        Err(reason) if in_ci() => Err(reason),
+        Err(reason) => {
+            eprintln!("SKIPPED: THE LIBRARY FOR WASM: {reason}");
+            Ok(())
+        }
+    }
 }
 
 struct Page {

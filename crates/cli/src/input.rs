@@ -9,7 +9,7 @@ use ldwrap::attributes::MeshAttributes;
 use ldwrap::io::{Detail, MeshFormat, Model, read_model, read_model_as};
 use ldwrap::{CheckOptions, PolygonSoup, Progress, RepairReport, SurfaceMesh};
 
-use crate::args::{MeshArgs, MeshFormatArg, OnlyArg};
+use crate::args::{BoxArg, MeshArgs, MeshFormatArg, OnlyArg};
 
 /// A checked mesh and what had to be done to it.
 pub(crate) struct Input {
@@ -55,6 +55,24 @@ pub(crate) fn read_detail(
     let options = CheckOptions { turn_outward: !args.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
     Ok(Input { name, soup, mesh, repaired, attributes })
+}
+
+impl Input {
+    /// Keeps what lies in a box.
+    pub(crate) fn clip(self, BoxArg(low, high): BoxArg) -> anyhow::Result<Self> {
+        let Self { name, soup, mesh, repaired, attributes } = self;
+        let mut model = Model { soup, attributes };
+        model
+            .clip(&mesh, (low, high))
+            .map_err(|error| anyhow!("{error}: give another --box"))
+            .with_context(|| name.clone())?;
+        let Model { soup, attributes } = model;
+        // What was turned stays turned; what was repaired is the file's.
+        let (mesh, _) = SurfaceMesh::from_soup(&soup, &CheckOptions { turn_outward: false })
+            .context("in the box")
+            .with_context(|| name.clone())?;
+        Ok(Self { name, soup, mesh, repaired, attributes })
+    }
 }
 
 /// Keeps the faces that have one of the names.

@@ -141,6 +141,11 @@ pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
     if args.views.for_views && selection == Selection::Extensible {
         return Err(Failure::wrong_use("--for-views moves points, so extensible points cannot be for views"));
     }
+    if quota(args).is_some() && selection == Selection::Extensible {
+        return Err(Failure::wrong_use(
+            "--per-component and --at-least move points, so extensible points cannot have them",
+        ));
+    }
     let equalize = !args.no_equalize && selection != Selection::Extensible;
     let options = Options {
         request: request(&args.request),
@@ -155,6 +160,21 @@ pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
     };
     options.validate().map_err(|error| Failure::wrong_use(error.to_string()))?;
     Ok(options)
+}
+
+/// How points are shared out among the connected components, if not by mass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quota {
+    /// So many for each.
+    Each(usize),
+    /// At least so many for each.
+    AtLeast(usize),
+}
+
+/// The quota that is asked for.
+pub(crate) fn quota(args: &WrapArgs) -> Option<Quota> {
+    let each = args.request.per_component.map(|count| Quota::Each(count as usize));
+    each.or(args.at_least.map(|count| Quota::AtLeast(count as usize)))
 }
 
 fn for_views(args: &ForViewsArgs) -> Option<ForViews> {
@@ -179,7 +199,8 @@ pub(crate) fn wrap_options(segment: &SegmentArgs, points: &SequenceArgs) -> Outc
 }
 
 fn request(args: &RequestArgs) -> Request {
-    let RequestArgs { count, density, spacing, irregularity } = *args;
+    // The number for --per-component is known when the mesh is.
+    let RequestArgs { count, density, spacing, irregularity, per_component: _ } = *args;
     count
         .map(|n| Request::Count(n as usize))
         .or(density.map(Request::Density))

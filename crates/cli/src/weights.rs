@@ -5,14 +5,16 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use glam::{DVec3, DVec4, Vec4Swizzles};
-use ldwrap::SurfacePoint;
 use ldwrap::attributes::Places;
 use ldwrap::density::Density;
 use ldwrap::io::Detail;
 use ldwrap::io::points::Attribute;
+use ldwrap::pipeline::Request;
+use ldwrap::{SurfacePoint, quota};
 
 use crate::args::{WeightsArgs, WeightsBy, WeightsOf};
 use crate::input::Input;
+use crate::job::Quota;
 
 /// The density that the arguments ask for on the mesh.
 pub(crate) fn density(args: &WeightsArgs, input: &Input) -> anyhow::Result<Density> {
@@ -21,6 +23,29 @@ pub(crate) fn density(args: &WeightsArgs, input: &Input) -> anyhow::Result<Densi
     }
     let Some(path) = &args.weights else { return Ok(Density::UNIFORM) };
     read(args.weights_of, path, input).with_context(|| path.display().to_string())
+}
+
+/// The density and the request that give connected components their quotas.
+pub(crate) fn shared_out(
+    quota: Quota,
+    density: &Density,
+    request: Request,
+    input: &Input,
+) -> anyhow::Result<(Density, Request)> {
+    let Input { name, mesh, .. } = input;
+    let counts = match (quota, request) {
+        (Quota::Each(count), _) => quota::each(mesh, density, count),
+        (Quota::AtLeast(least), Request::Count(count)) => {
+            quota::at_least(mesh, density, count, least).with_context(|| format!("{name}: --at-least"))?
+        }
+        (Quota::AtLeast(_), request) => return Err(anyhow!("--at-least needs a count, not {request:?}")),
+    };
+    let total = counts.iter().try_fold(0usize, |sum, &count| sum.checked_add(count));
+    let total = total.filter(|&total| u32::try_from(total).is_ok()).ok_or_else(|| {
+        anyhow!("{name}: --per-component asks for more than {} points: take a smaller number", u32::MAX)
+    })?;
+    let density = density.with_counts(mesh, &counts).with_context(|| name.clone())?;
+    Ok((density, Request::Count(total)))
 }
 
 /// How much of the mesh file must be read for the weights.

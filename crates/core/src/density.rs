@@ -40,6 +40,12 @@ pub enum DensityError {
         /// Which of them, from 0.
         index: usize,
     },
+    /// A connected component is to get points, but has no weight.
+    #[error("connected component {component} is to get points, but has no weight")]
+    NoWeight {
+        /// Which, from 0.
+        component: usize,
+    },
     /// No place would get points.
     #[error("all weights of the surface are zero: no place would get points")]
     Zero,

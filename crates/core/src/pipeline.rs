@@ -19,6 +19,8 @@ pub use crate::selection::{SampleOrder, Selection};
 
 /// Everything that decides the points, besides the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Options {
     /// How many points. Default: exactly 1,000.
     pub request: Request,

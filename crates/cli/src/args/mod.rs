@@ -13,8 +13,8 @@ use ldwrap::shapes::Shape;
 
 pub(crate) use judge::{BoundArgs, CompareArgs, MeasureArgs, PlanarSet, PlaneArgs, PointsOf};
 pub(crate) use wrap::{
-    AttributeArg, ForViewsArgs, OnlyArg, OrderArg, SelectArg, WeightsArgs, WeightsBy, WeightsOf, WrapArgs,
-    WrapOutputArgs,
+    AttributeArg, BoxArg, ForViewsArgs, OnlyArg, OrderArg, SelectArg, WeightsArgs, WeightsBy, WeightsOf,
+    WrapArgs, WrapOutputArgs,
 };
 
 /// Spreads low-discrepancy points over polygon meshes.
@@ -109,6 +109,9 @@ pub(crate) struct RequestArgs {
     /// Make as many points as bring the irregularity ratio R (eq. 8) down to this
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(crate) irregularity: Option<f64>,
+    /// Make exactly M points on each connected component of the mesh, large or small
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "no_equalize")]
+    pub(crate) per_component: Option<u32>,
 }
 
 /// How the surface is cut.

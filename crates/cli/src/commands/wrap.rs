@@ -25,7 +25,7 @@ use crate::weights;
 
 /// Runs the command.
 pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
-    let options = job::options(args)?;
+    let mut options = job::options(args)?;
     let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
     let stages = Stages::new(quiet);
     let carried = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
@@ -35,7 +35,14 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    let density = weights::density(&args.weights, &input)?;
+    let input = match args.inside {
+        Some(inside) => input.clip(inside)?,
+        None => input,
+    };
+    let mut density = weights::density(&args.weights, &input)?;
+    if let Some(quota) = job::quota(args) {
+        (density, options.request) = weights::shared_out(quota, &density, options.request, &input)?;
+    }
     let run = pipeline::run_weighted(&input.mesh, &density, &options, &stages)
         .with_context(|| input.name.clone())?;
     let job = Job { input: &input, density: &density, options: &options };

@@ -29,8 +29,14 @@ impl<'a> Places<'a> {
     /// 1998, doi:10.1080/10867651.1998.10487494). The normal of the face where the file leaves corners without, or
     /// where they cancel out. Components that the check turned outward have their normals turned too.
     pub fn normal(&self, mesh: &SurfaceMesh, point: &SurfacePoint) -> DVec3 {
+        let normal = self.mixed_normal(mesh, point);
+        normal.and_then(DVec3::try_normalize).unwrap_or_else(|| mesh.face_normal(point.face))
+    }
+
+    /// What lies between the normals of the corners, of any length; `None` where a corner has none.
+    pub(super) fn mixed_normal(&self, mesh: &SurfaceMesh, point: &SurfacePoint) -> Option<DVec3> {
         let source = &mesh.sources()[point.face.index()];
-        let normal = match &self.vertex_normals {
+        match &self.vertex_normals {
             Some(normals) => {
                 let [a, b, c] = mesh.topology().corners(point.face).map(|v| normals[v.index()]);
                 Some(triangle::at(a, b, c, point.barycentric))
@@ -39,8 +45,7 @@ impl<'a> Places<'a> {
                 let normal = self.attributes.normals.at(source.corners, point.barycentric);
                 normal.map(|n| if source.turned { -n } else { n })
             }
-        };
-        normal.and_then(DVec3::try_normalize).unwrap_or_else(|| mesh.face_normal(point.face))
+        }
     }
 
     /// The texture coordinates of the first set, origin at the lower left of the picture.

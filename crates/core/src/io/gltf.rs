@@ -72,6 +72,7 @@ pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Resu
 ///
 /// # Errors
 /// As [`read`].
+#[cfg(feature = "io")]
 pub(crate) fn vertices(bytes: &[u8], resolver: &Resolver<'_>) -> Result<Vec<DVec3>, ReadError> {
     let (document, blob) = parse(bytes)?;
     let buffers = Buffers::load(&document, blob, resolver)?;

@@ -1,5 +1,6 @@
 //! Readers and writers: bytes in, bytes out, one file a format.
 
+mod clip;
 mod detect;
 #[cfg(feature = "gltf")]
 pub mod gltf;
@@ -17,5 +18,6 @@ mod select;
 #[cfg(feature = "stl")]
 pub mod stl;
 
+pub use clip::ClipError;
 pub use detect::{MeshFormat, detect};
 pub use read::{Detail, Model, Place, ReadError, Resolver, read_mesh, read_model, read_model_as};

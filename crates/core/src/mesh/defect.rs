@@ -2,7 +2,7 @@
 
 /// What checking changed; all zero for a clean mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct RepairReport {
     /// Vertices merged into an earlier one at exactly the same position.

@@ -22,6 +22,8 @@ use crate::sample::Sample;
 
 /// A point file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum PointFormat {
     /// PLY, binary little-endian: `double` x y z, `float` nx ny nz, `int` face and
