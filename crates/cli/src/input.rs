@@ -6,7 +6,7 @@ use std::path::{Component, Path};
 
 use anyhow::{Context, anyhow};
 use ldwrap::attributes::MeshAttributes;
-use ldwrap::io::{Detail, MeshFormat, Model, read_model, read_model_as};
+use ldwrap::io::{Detail, MeshFormat, Model, detect, read_model, read_model_as};
 use ldwrap::{CheckOptions, PolygonSoup, Progress, RepairReport, SurfaceMesh};
 
 use crate::args::{BoxArg, MeshArgs, MeshFormatArg, OnlyArg};
@@ -15,6 +15,8 @@ use crate::args::{BoxArg, MeshArgs, MeshFormatArg, OnlyArg};
 pub(crate) struct Input {
     /// What messages call it.
     pub(crate) name: String,
+    /// The format that content or name tell.
+    pub(crate) format: Option<MeshFormat>,
     /// As the file gives it.
     pub(crate) soup: PolygonSoup,
     pub(crate) mesh: SurfaceMesh,
@@ -46,6 +48,8 @@ pub(crate) fn read_detail(
         None => read_model(&bytes, Some(&name), detail, &resolver),
     };
     let mut model = model.with_context(|| name.clone())?;
+    let detected = || detect(&bytes, Some(name.strip_suffix(".gz").unwrap_or(&name)));
+    let format = args.mesh_format.map(MeshFormat::from).or_else(detected);
     if !only.is_empty() {
         select(&mut model, only).with_context(|| name.clone())?;
     }
@@ -54,13 +58,13 @@ pub(crate) fn read_detail(
     progress.begin("check", 1);
     let options = CheckOptions { turn_outward: !args.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
-    Ok(Input { name, soup, mesh, repaired, attributes })
+    Ok(Input { name, format, soup, mesh, repaired, attributes })
 }
 
 impl Input {
     /// Keeps what lies in a box.
     pub(crate) fn clip(self, BoxArg(low, high): BoxArg) -> anyhow::Result<Self> {
-        let Self { name, soup, mesh, repaired, attributes } = self;
+        let Self { name, format, soup, mesh, repaired, attributes } = self;
         let mut model = Model { soup, attributes };
         model
             .clip(&mesh, (low, high))
@@ -71,7 +75,7 @@ impl Input {
         let (mesh, _) = SurfaceMesh::from_soup(&soup, &CheckOptions { turn_outward: false })
             .context("in the box")
             .with_context(|| name.clone())?;
-        Ok(Self { name, soup, mesh, repaired, attributes })
+        Ok(Self { name, format, soup, mesh, repaired, attributes })
     }
 }
 

@@ -75,6 +75,7 @@ mod progress;
 pub mod progressive;
 pub mod quota;
 mod random;
+pub mod refine;
 mod request;
 mod sample;
 pub mod segment;

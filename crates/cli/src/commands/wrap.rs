@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use ldwrap::correct::Correction;
-use ldwrap::density::Density;
 use ldwrap::io::Detail;
 use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{self, Options, Run};
@@ -21,11 +20,11 @@ use crate::points;
 use crate::progress::Stages;
 use crate::quality::Judge;
 use crate::report::{self, MeshReport, Report};
-use crate::weights;
+use crate::weights::{self, Ground};
 
 /// Runs the command.
 pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
-    let mut options = job::options(args)?;
+    let options = job::options(args)?;
     let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
     let stages = Stages::new(quiet);
     let carried = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
@@ -35,19 +34,11 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    let input = match args.inside {
-        Some(inside) => input.clip(inside)?,
-        None => input,
-    };
-    let mut density = weights::density(&args.weights, &input)?;
-    if let Some(quota) = job::quota(args) {
-        (density, options.request) = weights::shared_out(quota, &density, options.request, &input)?;
-    }
-    let run = pipeline::run_weighted(&input.mesh, &density, &options, &stages)
-        .with_context(|| input.name.clone())?;
-    let job = Job { input: &input, density: &density, options: &options };
-    let files = write(job, &run, &outputs, &stages)?;
-    for line in summary(&input, &options, &run) {
+    let ground = weights::prepare(args, input, options)?;
+    let run = pipeline::run_weighted(ground.mesh(), &ground.density, &ground.options, &stages)
+        .with_context(|| ground.input.name.clone())?;
+    let files = write(&ground, &run, &outputs, &stages)?;
+    for line in summary(&ground.input, &ground.options, &run) {
         stages.say(&line);
     }
     for file in files {
@@ -56,17 +47,10 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     Ok(())
 }
 
-/// What was asked for.
-#[derive(Clone, Copy)]
-struct Job<'a> {
-    input: &'a Input,
-    density: &'a Density,
-    options: &'a Options,
-}
-
-fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
-    let Job { input, density, options } = job;
+fn write(ground: &Ground, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
+    let Ground { input, density, options, .. } = ground;
     let Input { mesh, repaired, .. } = input;
+    let samples = ground.lifted(&run.samples);
     let mut outputs = Outputs::default();
     if wanted.strips.is_some() || wanted.preview.is_some() {
         stages.begin("draw", 0);
@@ -76,15 +60,15 @@ fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyh
         outputs.stage(destination, svg.into_bytes())?;
     }
     if let Some(destination) = &wanted.preview {
-        outputs
-            .stage(destination, preview_png(mesh, &run.strips, &run.samples, &PreviewOptions::default()))?;
+        let preview = preview_png(ground.mesh(), &run.strips, &run.samples, &PreviewOptions::default());
+        outputs.stage(destination, preview)?;
     }
     if let Some(wanted) = &wanted.points {
         stages.begin("write", 0);
-        outputs.stage(&wanted.destination, points::bytes(input, &run.samples, wanted)?)?;
+        outputs.stage(&wanted.destination, points::bytes(input, &samples, wanted)?)?;
     }
     let quality = wanted.quality.then(|| {
-        let points: Vec<SurfacePoint> = run.samples.iter().map(|sample| sample.point).collect();
+        let points: Vec<SurfacePoint> = samples.iter().map(|sample| sample.point).collect();
         Judge::new(mesh, points.len(), stages).quality(&points, stages)
     });
     let seconds = stages.finish();

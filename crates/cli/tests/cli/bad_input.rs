@@ -74,7 +74,9 @@ fn a_buffer_outside_the_folder_is_not_read() {
     folder.write("out.bin", &bytes);
     folder.write("sub/in.bin", &bytes);
     folder.write("good.gltf", gltf("sub/in.bin"));
-    assert_eq!(folder.run("info good.gltf --json").ok().json()["faces"], 1);
+    let good = folder.run("info good.gltf --json").ok().json();
+    assert_eq!([&good["format"], &good["unit"], &good["up"]], ["gltf", "metre", "+Y"]);
+    assert_eq!(good["faces"], 1);
     folder.write("missing.gltf", gltf("sub/none.bin"));
     folder.run("info missing.gltf").failed(&["missing.gltf", "sub/none.bin"]);
     folder.write("sub/bad.gltf", gltf("../out.bin"));

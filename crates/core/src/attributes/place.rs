@@ -77,6 +77,21 @@ impl<'a> Places<'a> {
         }
     }
 
+    /// Where the corners of a face lie in the picture of its material, in texels from the upper left of the first repetition;
+    /// `None` where there is no picture or no texture coordinates.
+    pub fn texels(&self, mesh: &SurfaceMesh, face: FaceId) -> Option<[DVec2; 3]> {
+        let material = self.attributes.materials.get(self.material(mesh, face)?)?.as_ref()?;
+        let texture = material.texture.as_ref()?;
+        let (width, height) = self.attributes.images.get(texture.image)?.size();
+        let uv = self.attributes.uv.get(texture.uv_set)?;
+        let [a, b, c] = mesh.sources()[face.index()].corners.map(|corner| {
+            let uv = uv.get(corner)?;
+            let place = texture.transform.transform_point2(DVec2::new(uv.x, 1.0 - uv.y));
+            Some(place * DVec2::new(width.into(), height.into()))
+        });
+        Some([a?, b?, c?])
+    }
+
     fn material_color(&self, mesh: &SurfaceMesh, point: &SurfacePoint, material: &Material) -> DVec4 {
         let texel = material.texture.as_ref().and_then(|texture| {
             let image = self.attributes.images.get(texture.image)?;
