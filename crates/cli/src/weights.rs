@@ -9,9 +9,9 @@ use ldwrap::attributes::Places;
 use ldwrap::density::Density;
 use ldwrap::io::Detail;
 use ldwrap::io::points::Attribute;
-use ldwrap::pipeline::{Options, Request};
+use ldwrap::pipeline::{Options, Request, Run, run_weighted};
 use ldwrap::refine::{Refined, refine};
-use ldwrap::{Sample, SurfaceMesh, SurfacePoint, quota};
+use ldwrap::{Progress, Sample, SurfaceMesh, SurfacePoint, quota};
 
 use crate::args::{WeightsArgs, WeightsBy, WeightsOf, WrapArgs};
 use crate::input::Input;
@@ -27,12 +27,26 @@ pub(crate) struct Ground {
     pub(crate) density: Density,
     /// How many points, and all else that decides them.
     pub(crate) options: Options,
+    /// How many each connected component is to get, if that was asked for.
+    counts: Option<Vec<usize>>,
 }
 
 impl Ground {
     /// The mesh that the stages run on.
     pub(crate) fn mesh(&self) -> &SurfaceMesh {
         self.refined.as_ref().map_or(&self.input.mesh, Refined::mesh)
+    }
+
+    /// Runs all stages.
+    pub(crate) fn run(&self, progress: &dyn Progress) -> anyhow::Result<Run> {
+        let run =
+            match &self.counts {
+                Some(counts) => quota::run(self.mesh(), &self.density, counts, &self.options, progress)
+                    .map_err(Into::into),
+                None => run_weighted(self.mesh(), &self.density, &self.options, progress)
+                    .map_err(anyhow::Error::from),
+            };
+        run.with_context(|| self.input.name.clone())
     }
 
     /// Samples on it as samples on the mesh of the input.
@@ -59,12 +73,11 @@ pub(crate) fn prepare(args: &WrapArgs, input: Input, options: Options) -> anyhow
         }
         (None, None) => (None, Density::UNIFORM),
     };
-    let mut ground = Ground { input, refined, density, options };
+    let mut ground = Ground { input, refined, density, options, counts: None };
     if let Some(quota) = job::quota(args) {
         let counts = counts(quota, &ground)?;
         ground.options.request = Request::Count(counts.iter().sum());
-        ground.density =
-            ground.density.with_counts(ground.mesh(), &counts).with_context(|| ground.input.name.clone())?;
+        ground.counts = Some(counts);
     }
     Ok(ground)
 }

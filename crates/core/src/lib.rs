@@ -19,8 +19,8 @@
 //!
 //! [`irregularity`] says how much of the surface lies beside torn borders (4.3). [`measure`] judges any points on a
 //! surface, whoever made them, and [`baseline`] makes others to compare with. A [`density`] makes points denser in places,
-//! inside large faces after [`refine`], and gives connected components their [`quota`]; [`io::Model::clip`] keeps what lies in a
-//! box, [`io::Model::retain`] some polygons. [`shapes`] generates meshes, [`spatial`] answers
+//! inside large faces after [`refine`]; [`quota`] gives each connected component its number of points; [`io::Model::clip`] keeps
+//! what lies in a box, [`io::Model::retain`] some polygons. [`shapes`] generates meshes, [`spatial`] answers
 //! what can be seen and what is nearest, and the readers and writers of `io` take and give bytes.
 //!
 //! The short path, with nothing to decide but the number of points, is [`sample`]; the long one keeps every value:

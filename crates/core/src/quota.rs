@@ -1,12 +1,13 @@
 //! Points for connected components: how many each is to get, and the density that gives it them.
 //!
 //! By area alone a small part of a model gets few points or none. Counts for the components are shared out first
-//! ([`each`], [`at_least`]); a density made for them ([`Density::with_counts`]) then steers all stages, so equalized
-//! points meet the counts exactly.
+//! ([`each`], [`at_least`]); [`run`] then meets them exactly. It wraps similar copies of the components, each as large as its
+//! count asks for, with the same density everywhere; a sample of a copy is one of the mesh, because similar triangles have
+//! the same barycentric coordinates. So a part a millionth as large costs no more than any other.
 //!
 //! ```
 //! use ldwrap::density::Density;
-//! use ldwrap::pipeline::{Options, run_weighted};
+//! use ldwrap::pipeline::Options;
 //! use ldwrap::{CheckOptions, Silent, SurfaceMesh, quota, shapes};
 //!
 //! // A cube and, a hundredth as large, another.
@@ -20,15 +21,35 @@
 //!
 //! let counts = quota::at_least(&mesh, &Density::UNIFORM, 100, 10)?;
 //! assert_eq!(counts, [90, 10]);
-//! let density = Density::UNIFORM.with_counts(&mesh, &counts)?;
-//! let samples = run_weighted(&mesh, &density, &Options::for_count(100), &Silent)?.samples;
+//! let samples = quota::run(&mesh, &Density::UNIFORM, &counts, &Options::for_count(100), &Silent)?.samples;
 //! let on_small = samples.iter().filter(|s| mesh.locate(&s.point).x > 0.9).count();
 //! assert_eq!(on_small, 10);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use glam::DVec3;
+
 use crate::density::{Density, DensityError};
-use crate::mesh::SurfaceMesh;
+use crate::ids::{FaceId, VertexId};
+use crate::mesh::{SurfaceMesh, Topology};
+use crate::pipeline::{Options, OptionsError, Request, Run, run_weighted};
+use crate::progress::Progress;
+use crate::selection::Selection;
+
+/// Why components do not get their counts.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum QuotaError {
+    /// The counts do not fit the mesh and its density.
+    #[error(transparent)]
+    Density(#[from] DensityError),
+    /// The other options cannot be met.
+    #[error(transparent)]
+    Options(#[from] OptionsError),
+    /// Only equalizing meets counts exactly, and not where the components stand is looked at.
+    #[error("counts for components need points that are equalized, not for views and not extensible")]
+    NotEqualized,
+}
 
 /// Fewer points than the components need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -113,60 +134,133 @@ pub fn at_least(
     Ok(counts)
 }
 
-impl Density {
-    /// The density that gives these counts to the connected components, numbered as by
-    /// [`components`](crate::Topology::components): inside each, places keep their proportions. With
-    /// [`Request::Count`](crate::pipeline::Request::Count) of their sum, equalized points meet the counts exactly, others to
-    /// within what wrapping gives. Linear time.
-    ///
-    /// # Errors
-    /// [`DensityError`] when there is not one count for each component, or a component without weight is to have points,
-    /// or no one is.
-    ///
-    /// # Panics
-    /// If the density was made for a mesh with fewer faces.
-    pub fn with_counts(&self, mesh: &SurfaceMesh, counts: &[usize]) -> Result<Self, DensityError> {
-        let components = mesh.topology().components();
-        if counts.len() != components.count {
-            let (found, expected) = (counts.len(), components.count);
-            return Err(DensityError::Length { found, expected, elements: "components" });
-        }
-        let masses = masses(mesh, self);
-        if let Some(component) = (0..counts.len()).find(|&c| counts[c] > 0 && masses[c] <= 0.0) {
-            return Err(DensityError::NoWeight { component });
-        }
-        let weights: Vec<[f64; 3]> = mesh
-            .topology()
-            .face_ids()
-            .map(|face| {
-                let component = components.of_face[face.index()] as usize;
-                match counts[component] {
-                    0 => [0.0; 3],
-                    count => self.corners(face).map(|weight| weight * (count as f64 / masses[component])),
-                }
-            })
-            .collect();
-        Self::of_corners(mesh, &weights)
+/// As [`run_weighted`], with exactly these numbers of points on the connected components, numbered as by
+/// [`components`](crate::Topology::components); inside each they follow the density. The request of the options does not
+/// count. Points must be equalized; `d_m`, strips and places in the plane are those of similar copies of the components,
+/// which together have the area of the mesh. Cost: that of [`run_weighted`].
+///
+/// # Errors
+/// [`QuotaError`] when there is not one count for each component, a component without weight is to have points, no one is, or
+/// the options cannot be met.
+///
+/// # Panics
+/// If the density was made for a mesh with fewer faces.
+pub fn run(
+    mesh: &SurfaceMesh,
+    density: &Density,
+    counts: &[usize],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<Run, QuotaError> {
+    let equalized = options.equalize.is_some_and(|equalize| equalize.for_views.is_none());
+    if !equalized || options.selection == Selection::Extensible {
+        return Err(QuotaError::NotEqualized);
     }
+    let (copies, weights) = copies(mesh, density, counts)?;
+    let density = match weights {
+        Some(weights) => Density::of_corners(&copies, &weights)?,
+        None => Density::UNIFORM,
+    };
+    let request = Request::Count(counts.iter().sum());
+    Ok(run_weighted(&copies, &density, &Options { request, ..*options }, progress)?)
+}
+
+/// For each corner of each face its weight.
+type Weights = Vec<[f64; 3]>;
+
+/// The mesh with each component as large as its count asks for, apart from each other, in faces of the same numbers; and
+/// the weights there, if not all are the same.
+fn copies(
+    mesh: &SurfaceMesh,
+    density: &Density,
+    counts: &[usize],
+) -> Result<(SurfaceMesh, Option<Weights>), DensityError> {
+    let components = mesh.topology().components();
+    if counts.len() != components.count {
+        let (found, expected) = (counts.len(), components.count);
+        return Err(DensityError::Length { found, expected, elements: "components" });
+    }
+    let masses = masses(mesh, density);
+    if let Some(component) = (0..counts.len()).find(|&c| counts[c] > 0 && masses[c] <= 0.0) {
+        return Err(DensityError::NoWeight { component });
+    }
+    let total: f64 = counts.iter().map(|&count| count as f64).sum();
+    if total == 0.0 {
+        return Err(DensityError::Zero);
+    }
+    let areas = masses_of(mesh, &components.of_face, components.count, |face| mesh.face_area(face));
+    let mut bounds = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); components.count];
+    for (corners, &component) in mesh.triangles().zip(&components.of_face) {
+        let (low, high) = &mut bounds[component as usize];
+        for corner in corners {
+            (*low, *high) = (low.min(corner), high.max(corner));
+        }
+    }
+    // A component that gets no point is as large as for one, and weighs nothing.
+    let scale = |c: usize| libm::sqrt(counts[c].max(1) as f64 / total * mesh.area() / areas[c]);
+    let scales: Vec<f64> = (0..components.count).map(scale).collect();
+    let size = bounds
+        .iter()
+        .zip(&scales)
+        .fold(0.0, |size: f64, ((low, high), s)| size.max((*high - *low).max_element() * s));
+    // In the cells of a cube, none of which reaches into another.
+    let row = (1..).find(|&row: &u64| row.saturating_pow(3) >= components.count as u64).unwrap_or(1);
+    let place = |c: usize| {
+        let c = c as u64;
+        DVec3::new((c % row) as f64, (c / row % row) as f64, (c / (row * row)) as f64) * (1.25 * size)
+    };
+    let mut positions = Vec::with_capacity(mesh.vertex_count());
+    let mut faces = vec![[VertexId(0); 3]; mesh.face_count()];
+    // Components may share vertices where they touch. A vertex's copy is that of the component that was copied last.
+    let mut copy_of: Vec<Option<(u32, VertexId)>> = vec![None; mesh.vertex_count()];
+    let mut order: Vec<usize> = (0..mesh.face_count()).collect();
+    order.sort_by_key(|&face| components.of_face[face]);
+    for face in order {
+        let component = components.of_face[face];
+        faces[face] = mesh.topology().faces()[face].map(|vertex| match copy_of[vertex.index()] {
+            Some((of, copy)) if of == component => copy,
+            _ => {
+                let c = component as usize;
+                let copy = VertexId::new(positions.len());
+                positions.push((mesh.position(vertex) - bounds[c].0) * scales[c] + place(c));
+                copy_of[vertex.index()] = Some((component, copy));
+                copy
+            }
+        });
+    }
+    let (topology, _) = Topology::new(positions.len(), faces);
+    let copies = SurfaceMesh::assemble(positions, topology, mesh.sources().to_vec());
+    let uniform = density.is_uniform() && counts.iter().all(|&count| count > 0);
+    let weights = (!uniform).then(|| {
+        let weights = mesh.topology().face_ids().zip(&components.of_face).map(|(face, &component)| {
+            let c = component as usize;
+            let share = if counts[c] > 0 { areas[c] / masses[c] } else { 0.0 };
+            density.corners(face).map(|weight| weight * share)
+        });
+        weights.collect()
+    });
+    Ok((copies, weights))
 }
 
 /// The mass of each component.
 fn masses(mesh: &SurfaceMesh, density: &Density) -> Vec<f64> {
     let components = mesh.topology().components();
-    let mut masses = vec![0.0; components.count];
+    masses_of(mesh, &components.of_face, components.count, |face| density.face_mass(mesh, face))
+}
+
+fn masses_of(mesh: &SurfaceMesh, of_face: &[u32], count: usize, mass: impl Fn(FaceId) -> f64) -> Vec<f64> {
+    let mut masses = vec![0.0; count];
     for face in mesh.topology().face_ids() {
-        masses[components.of_face[face.index()] as usize] += density.face_mass(mesh, face);
+        masses[of_face[face.index()] as usize] += mass(face);
     }
     masses
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::pipeline::{Options, run_weighted};
     use crate::planted;
     use crate::progress::Silent;
     use crate::shapes::{self, Shape};
@@ -181,11 +275,11 @@ mod tests {
         planted::mesh(&soup)
     }
 
-    fn found(mesh: &SurfaceMesh, density: &Density, count: usize) -> Vec<usize> {
+    fn found(mesh: &SurfaceMesh, density: &Density, counts: &[usize]) -> Vec<usize> {
         let components = mesh.topology().components();
         let mut found = vec![0; components.count];
-        let run = run_weighted(mesh, density, &Options::for_count(count), &Silent).unwrap();
-        assert_eq!(run.samples.len(), count);
+        let run = run(mesh, density, counts, &Options::for_count(1), &Silent).unwrap();
+        assert_eq!(run.samples.len(), counts.iter().sum::<usize>());
         for point in run.points() {
             found[components.of_face[point.face.index()] as usize] += 1;
         }
@@ -215,10 +309,55 @@ mod tests {
         let density = Density::of_faces(&mesh, &weights).unwrap();
         assert_eq!(at_least(&mesh, &density, 5, 2), Ok(vec![0, 3, 2]));
         assert_eq!(each(&mesh, &density, 7), [0, 7, 7]);
-        assert_eq!(density.with_counts(&mesh, &[1, 1, 1]), Err(DensityError::NoWeight { component: 0 }));
-        assert_eq!(density.with_counts(&mesh, &[0, 0, 0]), Err(DensityError::Zero));
+        let refused =
+            |counts: &[usize], options| run(&mesh, &density, counts, &options, &Silent).unwrap_err();
+        let options = Options::for_count(1);
+        assert_eq!(refused(&[1, 1, 1], options), DensityError::NoWeight { component: 0 }.into());
+        assert_eq!(refused(&[0, 0, 0], options), DensityError::Zero.into());
         let length = DensityError::Length { found: 2, expected: 3, elements: "components" };
-        assert_eq!(density.with_counts(&mesh, &[1, 1]), Err(length));
+        assert_eq!(refused(&[1, 1], options), length.into());
+        assert_eq!(refused(&[0, 1, 1], Options { equalize: None, ..options }), QuotaError::NotEqualized);
+        let wrong = refused(&[0, 1, 1], Options { tolerance: -1.0, ..options });
+        assert!(matches!(wrong, QuotaError::Options(OptionsError::OutOfRange { name: "tolerance", .. })));
+        assert_eq!(found(&mesh, &density, &[0, 30, 4]), [0, 30, 4]);
+    }
+
+    #[test]
+    fn one_component_is_as_without_counts() {
+        let mesh = planted::mesh(&Shape::Torus.generate());
+        let options = Options::for_count(123);
+        let with = run(&mesh, &Density::UNIFORM, &[123], &options, &Silent).unwrap().samples;
+        let without = crate::pipeline::run(&mesh, &options, &Silent).unwrap().samples;
+        for (with, without) in with.iter().zip(&without) {
+            let [a, b] = [with, without].map(|sample| mesh.locate(&sample.point));
+            assert!(a.distance(b) < 1e-9, "{a} is not {b}");
+        }
+    }
+
+    #[test]
+    fn inside_a_component_points_follow_the_density() {
+        // Two squares that touch in an edge's end, one a thousandth as large; both are three times as dense on the right.
+        let mut soup = crate::PolygonSoup::default();
+        for (size, at) in [(1.0, 0.0), (1e-3, 1.0)] {
+            let square = planted::moved(shapes::square(16), |p| p * size + DVec3::new(at, at, 0.0));
+            planted::join(&mut soup, &square);
+        }
+        let mesh = planted::mesh(&soup);
+        assert_eq!(mesh.topology().components().count, 2);
+        let middle = |p: DVec3, c: u32| p.x - if c == 0 { 0.5 } else { 1.0005 };
+        let of_face = mesh.topology().components().of_face;
+        let weights: Vec<f64> = mesh
+            .triangles()
+            .zip(&of_face)
+            .map(|([a, b, c], &component)| if middle((a + b + c) / 3.0, component) > 0.0 { 3.0 } else { 1.0 })
+            .collect();
+        let density = Density::of_faces(&mesh, &weights).unwrap();
+        let run = run(&mesh, &density, &[400, 400], &Options::for_count(1), &Silent).unwrap();
+        for component in 0..2 {
+            let here = run.points().filter(|p| of_face[p.face.index()] == component);
+            let right = here.filter(|p| middle(mesh.locate(p), component) > 0.0).count();
+            assert!((297..=303).contains(&right), "{right} of 400 in component {component}");
+        }
     }
 
     #[test]
@@ -230,8 +369,7 @@ mod tests {
         planted::join(&mut soup, &planted::moved(shapes::tetrahedron(), |p| p * 1e-3 - DVec3::Y * 5.0));
         let mesh = planted::mesh(&soup);
         for counts in [[50; 5], [1; 5], [200, 3, 4, 2, 1], [1, 2, 7, 300, 40], [0, 5, 0, 0, 7]] {
-            let density = Density::UNIFORM.with_counts(&mesh, &counts).unwrap();
-            assert_eq!(found(&mesh, &density, counts.iter().sum()), counts);
+            assert_eq!(found(&mesh, &Density::UNIFORM, &counts), counts);
         }
     }
 
@@ -247,8 +385,7 @@ mod tests {
             let counts = at_least(&mesh, &Density::UNIFORM, count, least).unwrap();
             prop_assert_eq!(counts.iter().sum::<usize>(), count);
             prop_assert!(counts.iter().all(|&c| c >= least));
-            let density = Density::UNIFORM.with_counts(&mesh, &counts).unwrap();
-            prop_assert_eq!(found(&mesh, &density, count), counts);
+            prop_assert_eq!(found(&mesh, &Density::UNIFORM, &counts), counts);
         }
     }
 }

@@ -110,7 +110,8 @@ pub(crate) struct RequestArgs {
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(crate) irregularity: Option<f64>,
     /// Make exactly M points on each connected component of the mesh, large or small
-    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..), conflicts_with = "no_equalize")]
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..),
+        conflicts_with_all = ["no_equalize", "for_views"])]
     pub(crate) per_component: Option<u32>,
 }
 

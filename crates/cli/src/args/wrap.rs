@@ -39,7 +39,7 @@ pub(crate) struct WrapArgs {
     pub(crate) inside: Option<BoxArg>,
     /// Give each connected component at least M of the points; those with a larger share of the area give them
     #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..),
-        conflicts_with_all = ["density", "spacing", "irregularity", "per_component", "no_equalize"])]
+        conflicts_with_all = ["density", "spacing", "irregularity", "per_component", "no_equalize", "for_views"])]
     pub(crate) at_least: Option<u32>,
     #[command(flatten)]
     pub(crate) weights: WeightsArgs,

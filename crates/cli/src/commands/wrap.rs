@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use ldwrap::correct::Correction;
 use ldwrap::io::Detail;
 use ldwrap::irregularity::Irregularity;
-use ldwrap::pipeline::{self, Options, Run};
+use ldwrap::pipeline::{Options, Run};
 use ldwrap::{Progress, SurfacePoint};
 
 use crate::args::WrapArgs;
@@ -35,8 +34,7 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
         stages.say(&format!("note: {}: {note}", input.name));
     }
     let ground = weights::prepare(args, input, options)?;
-    let run = pipeline::run_weighted(ground.mesh(), &ground.density, &ground.options, &stages)
-        .with_context(|| ground.input.name.clone())?;
+    let run = ground.run(&stages)?;
     let files = write(&ground, &run, &outputs, &stages)?;
     for line in summary(&ground.input, &ground.options, &run) {
         stages.say(&line);
