@@ -38,9 +38,11 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     let density = weights::density(&args.weights, &input)?;
     let run = pipeline::run_weighted(&input.mesh, &density, &options, &stages)
         .with_context(|| input.name.clone())?;
-    let job = Job { input: &input, density: &density, options: &options };
-    let files = write(job, &run, &outputs, &stages)?;
-    for line in summary(&input, &options, &run) {
+    stages.begin("irregularity", 0);
+    let irregularity = run.irregularity();
+    let job = Job { input: &input, density: &density, options: &options, run: &run, irregularity };
+    let files = write(job, &outputs, &stages)?;
+    for line in summary(job) {
         stages.say(&line);
     }
     for file in files {
@@ -55,17 +57,19 @@ struct Job<'a> {
     input: &'a Input,
     density: &'a Density,
     options: &'a Options,
+    run: &'a Run,
+    irregularity: Irregularity,
 }
 
-fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
-    let Job { input, density, options } = job;
+fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
+    let Job { input, density, options, run, irregularity } = job;
     let Input { mesh, repaired, .. } = input;
     let mut outputs = Outputs::default();
     if wanted.strips.is_some() || wanted.preview.is_some() {
         stages.begin("draw", 0);
     }
     if let Some(destination) = &wanted.strips {
-        let svg = strips_svg(&run.strips, &run.domain, &run.samples, options.tolerance * run.d_m);
+        let svg = strips_svg(&run.strips, &run.domain, &run.samples, run.tolerance);
         outputs.stage(destination, svg.into_bytes())?;
     }
     if let Some(destination) = &wanted.preview {
@@ -82,15 +86,23 @@ fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyh
     });
     let seconds = stages.finish();
     if let Some(destination) = &wanted.report {
-        let report = Report::new(MeshReport::new(mesh, repaired), options, density, run, quality, seconds);
+        let report = Report::new(
+            MeshReport::new(mesh, repaired),
+            options,
+            density,
+            run,
+            irregularity,
+            quality,
+            seconds,
+        );
         outputs.stage(destination, report::json(&report)?)?;
     }
     outputs.commit()
 }
 
-fn summary(input: &Input, options: &Options, run: &Run) -> Vec<String> {
-    let Input { name, mesh, .. } = input;
-    let Irregularity { bound, refined, exact } = run.irregularity;
+fn summary(job: Job<'_>) -> Vec<String> {
+    let Job { input: Input { name, mesh, .. }, options, run, irregularity, density: _ } = job;
+    let Irregularity { bound, refined, exact } = irregularity;
     let Correction { projected, removed } = run.correction;
     let count = run.samples.len();
     let mut lines = vec![
@@ -102,7 +114,7 @@ fn summary(input: &Input, options: &Options, run: &Run) -> Vec<String> {
             run.d_m
         ),
         format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact"),
-        format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), options, run)),
+        format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), run)),
         format!("corrected: {projected} projected, {removed} removed"),
     ];
     if let Some(equalize) = &run.equalize {
