@@ -36,6 +36,7 @@ pub(crate) struct BatchArgs {
 
 /// Where the results of `batch` go.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Outputs")]
 pub(crate) struct BatchOutputArgs {
     /// The folder for the points, `journal.jsonl` and `summary.csv`; made if there is none
     #[arg(short, long, value_name = "OUT_DIR")]
@@ -57,6 +58,7 @@ pub(crate) struct BatchOutputArgs {
 
 /// How the work is shared out.
 #[derive(Debug, Args)]
+#[command(next_help_heading = "Jobs")]
 pub(crate) struct RunningArgs {
     /// Work on this many meshes at a time [default: one for each thread]; the threads are shared among them
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]

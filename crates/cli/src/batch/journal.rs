@@ -73,9 +73,9 @@ fn name(shard: Option<Shard>) -> String {
     shard.map_or_else(|| "journal.jsonl".to_owned(), |shard| format!("journal.{shard}.jsonl"))
 }
 
-/// All records of all journals in a folder, those of one journal in the order in which they were written. Lines that are
-/// torn are left out: what they tell of is done again.
-pub(crate) fn read_all(out: &Path) -> anyhow::Result<Vec<Record>> {
+/// The records of each journal in a folder, in the order in which they were written. Lines that are torn are left out:
+/// what they tell of is done again.
+pub(crate) fn read_all(out: &Path) -> anyhow::Result<Vec<Vec<Record>>> {
     let entries = fs::read_dir(out).with_context(|| format!("{}: cannot be listed", out.display()))?;
     let mut names = Vec::new();
     for entry in entries {
@@ -85,17 +85,14 @@ pub(crate) fn read_all(out: &Path) -> anyhow::Result<Vec<Record>> {
         }
     }
     names.sort();
-    let mut records = Vec::new();
+    let mut journals = Vec::new();
     for name in names {
         let path = out.join(name);
         let bytes = fs::read(&path).with_context(|| format!("{}: cannot be read", path.display()))?;
-        records.extend(
-            complete(&bytes)
-                .split(|&byte| byte == b'\n')
-                .filter_map(|line| serde_json::from_slice(line).ok()),
-        );
+        let lines = complete(&bytes).split(|&byte| byte == b'\n');
+        journals.push(lines.filter_map(|line| serde_json::from_slice(line).ok()).collect());
     }
-    Ok(records)
+    Ok(journals)
 }
 
 /// Everything up to the last end of a line.
@@ -170,10 +167,11 @@ mod tests {
         for record in &records {
             opened(out.path(), None).unwrap().append(record).unwrap();
         }
-        assert_eq!(read_all(out.path()).unwrap(), records);
+        assert_eq!(read_all(out.path()).unwrap(), [records.to_vec()]);
         let mut part = opened(out.path(), Some("1/2")).unwrap();
         part.append(&records[0]).unwrap();
-        assert_eq!(read_all(out.path()).unwrap().len(), 4);
+        let part = vec![records[0].clone()];
+        assert_eq!(read_all(out.path()).unwrap(), [part, records.to_vec()]);
     }
 
     #[test]
@@ -184,9 +182,9 @@ mod tests {
         let line = serde_json::to_string(&first).unwrap();
         for cut in 0..line.len() {
             fs::write(&path, format!("{line}\n{}", &line[..cut])).unwrap();
-            assert_eq!(read_all(out.path()).unwrap(), std::slice::from_ref(&first));
+            assert_eq!(read_all(out.path()).unwrap(), [vec![first.clone()]]);
             opened(out.path(), None).unwrap().append(&second).unwrap();
-            assert_eq!(read_all(out.path()).unwrap(), [first.clone(), second.clone()]);
+            assert_eq!(read_all(out.path()).unwrap(), [vec![first.clone(), second.clone()]]);
         }
     }
 

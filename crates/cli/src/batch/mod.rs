@@ -4,6 +4,7 @@
 //! is complete on the disk before it gets its name, and only then is a line added to the journal. Without that line, or
 //! without that file, the mesh is worked on again.
 
+pub(crate) mod begun;
 pub(crate) mod inputs;
 pub(crate) mod journal;
 pub(crate) mod names;

@@ -22,16 +22,20 @@ pub(crate) enum State {
 }
 
 impl Past {
-    /// From the records of all journals. Of several with the same output the latest counts.
-    pub(crate) fn new(records: Vec<Record>) -> Self {
-        let mut latest: HashMap<String, Record> = HashMap::with_capacity(records.len());
-        for record in records {
-            let Some(output) = &record.output else { continue };
-            if latest.get(output).is_none_or(|known| known.at <= record.at) {
-                latest.insert(output.clone(), record);
+    /// From the records of each journal. Of several with the same output the last of a journal counts, and of several
+    /// journals the one that was written latest.
+    pub(crate) fn new(journals: Vec<Vec<Record>>) -> Self {
+        let mut latest: HashMap<String, (usize, Record)> = HashMap::new();
+        for (journal, records) in journals.into_iter().enumerate() {
+            for record in records {
+                let Some(output) = &record.output else { continue };
+                let counts = |&(of, ref known): &(usize, Record)| of == journal || known.at <= record.at;
+                if latest.get(output).is_none_or(counts) {
+                    latest.insert(output.clone(), (journal, record));
+                }
             }
         }
-        Self(latest)
+        Self(latest.into_iter().map(|(output, (_, record))| (output, record)).collect())
     }
 
     /// Where a mesh stands whose points go below `out`, by the `options` of this run.
@@ -82,23 +86,31 @@ mod tests {
     #[test]
     fn points_that_are_there_are_finished() {
         let (out, task, record) = finished();
-        let state = |records, options| Past::new(records).state(&task, out.path(), options);
+        let state = |records, options| Past::new(vec![records]).state(&task, out.path(), options);
         assert_eq!(state(vec![record.clone()], "x"), State::Finished(record.clone()));
         assert_eq!(state(vec![], "x"), State::Open(None));
         assert_eq!(state(vec![record.clone()], "y"), State::Foreign(record.clone()));
         let old = Record { version: "0.0.1".to_owned(), ..record.clone() };
         assert_eq!(state(vec![old.clone()], "x"), State::Foreign(old));
-        // The latest counts, whatever the order.
-        let later = failed("a.ply", "x", 6);
-        assert_eq!(state(vec![later.clone(), record.clone()], "x"), State::Open(Some(later)));
-        let earlier = failed("a.ply", "x", 4);
-        assert_eq!(state(vec![record.clone(), earlier], "x"), State::Finished(record));
+        // In one journal the last counts, of several journals the latest.
+        let (earlier, later) = (failed("a.ply", "x", 4), failed("a.ply", "x", 6));
+        assert_eq!(state(vec![later.clone(), record.clone()], "x"), State::Finished(record.clone()));
+        assert_eq!(state(vec![record.clone(), earlier.clone()], "x"), State::Open(Some(earlier.clone())));
+        let state = |journals: [&Record; 2]| {
+            Past::new(journals.map(|record| vec![record.clone()]).to_vec()).state(&task, out.path(), "x")
+        };
+        for journals in [[&record, &later], [&later, &record]] {
+            assert_eq!(state(journals), State::Open(Some(later.clone())));
+        }
+        for journals in [[&record, &earlier], [&earlier, &record]] {
+            assert_eq!(state(journals), State::Finished(record.clone()));
+        }
     }
 
     #[test]
     fn points_that_are_not_whole_are_open() {
         let (out, task, record) = finished();
-        let past = Past::new(vec![record]);
+        let past = Past::new(vec![vec![record]]);
         fs::write(out.path().join("a.ply"), "ab").unwrap();
         assert_eq!(past.state(&task, out.path(), "x"), State::Open(None));
         fs::remove_file(out.path().join("a.ply")).unwrap();
@@ -109,7 +121,7 @@ mod tests {
     #[test]
     fn another_mesh_is_not_the_same() {
         let (out, task, record) = finished();
-        let past = Past::new(vec![record.clone()]);
+        let past = Past::new(vec![vec![record.clone()]]);
         fs::write(&task.input, "a longer mesh").unwrap();
         assert_eq!(past.state(&task, out.path(), "x"), State::Open(None));
         let elsewhere = Task { input: out.path().join("./in"), ..task.clone() };

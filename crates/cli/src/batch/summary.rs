@@ -68,12 +68,17 @@ pub(crate) fn csv<'a>(rows: impl Iterator<Item = (&'a Task, Option<&'a Record>)>
     Ok(writer.into_inner()?)
 }
 
+/// Seconds to the millisecond.
+fn milliseconds(seconds: f64) -> f64 {
+    (seconds * 1e3).round() / 1e3
+}
+
 fn row<'a>(task: &'a Task, record: Option<&'a Record>) -> Row<'a> {
     let row = Row {
         input: task.input.display().to_string(),
         output: task.output.as_deref().ok(),
         status: "pending",
-        seconds: record.map(|record| record.seconds.values().sum()),
+        seconds: record.map(|record| milliseconds(record.seconds.values().sum())),
         ..Row::default()
     };
     match record.map(|record| &record.result) {

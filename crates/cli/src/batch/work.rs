@@ -54,8 +54,7 @@ impl<'a> Plan<'a> {
                 .map_err(|trouble| without_old(trouble, &target))
         });
         let seconds = stages.finish().stages().map(|(stage, seconds)| (stage.to_owned(), seconds)).collect();
-        let result = made.map_or_else(Ended::Failed, Ended::Done);
-        Record { result, seconds, source, ..self.blank(task) }
+        Record { source, seconds, ..self.record(task, made.map_or_else(Ended::Failed, Ended::Done)) }
     }
 
     /// The record of a mesh on which the work panicked.
@@ -66,22 +65,28 @@ impl<'a> Plan<'a> {
             Ok(output) => without_old(trouble, &self.target(output)),
             Err(_) => trouble,
         };
-        Record { result: Ended::Failed(trouble), ..self.blank(task) }
+        self.record(task, Ended::Failed(trouble))
+    }
+
+    /// The record of something that there is no work on.
+    pub(crate) fn refused(&self, task: &Task) -> Option<Record> {
+        let trouble = task.output.clone().err()?;
+        Some(self.record(task, Ended::Failed(trouble)))
     }
 
     fn target(&self, output: &str) -> PathBuf {
         self.args.outputs.output.join(output)
     }
 
-    /// What is known before the work: it ended now, badly.
-    fn blank(&self, task: &Task) -> Record {
+    /// A record without what only the work can tell.
+    fn record(&self, task: &Task, result: Ended) -> Record {
         Record {
             input: task.input.display().to_string(),
             output: task.output.clone().ok(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             options: self.fingerprint.clone(),
             source: None,
-            result: Ended::Failed(Trouble { kind: Kind::Panic, message: String::new() }),
+            result,
             seconds: BTreeMap::new(),
             at: now(),
         }

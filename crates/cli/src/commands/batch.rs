@@ -8,6 +8,7 @@ use std::thread::available_parallelism;
 use anyhow::{Context, anyhow};
 
 use crate::args::BatchArgs;
+use crate::batch::begun::Begun;
 use crate::batch::journal::{self, Journal};
 use crate::batch::names::{self, Naming};
 use crate::batch::past::{Past, State};
@@ -34,7 +35,7 @@ pub(crate) fn run(args: &BatchArgs, threads: Option<u16>, quiet: bool) -> Outcom
     let past = Past::new(journal::read_all(out)?);
     let mut table = Table::new(tasks, &past, args, &plan)?;
     let files = Files::new(quiet, table.open.len());
-    let skipped = table.records.iter().flatten().count();
+    let before = table.done();
     if !args.running.summary_only {
         let cores = available_parallelism().map_or(1, NonZero::get);
         let workers = Workers::new(args.running.jobs.map(usize::from), threads.map_or(cores, usize::from));
@@ -44,7 +45,7 @@ pub(crate) fn run(args: &BatchArgs, threads: Option<u16>, quiet: bool) -> Outcom
     let rows = table.tasks.iter().zip(table.records.iter().map(Option::as_ref));
     let path = out.join(summary::name(args.running.shard));
     write_safely(journal.temporaries(), &path, &summary::csv(rows)?)?;
-    table.conclude(&path, skipped, &files)
+    table.conclude(&path, before, &files)
 }
 
 /// The meshes with what became of them.
@@ -69,8 +70,9 @@ impl Table {
                 State::Foreign(record) => return Err(foreign(&record, task, out, plan)),
                 State::Open(tried) => {
                     open.push(place);
-                    // A run that works tries again.
-                    records[place] = tried.filter(|_| args.running.summary_only);
+                    // A run that works tries again. Where there is nothing to work on, that is known without work.
+                    let known = || tried.or_else(|| plan.refused(task));
+                    records[place] = if args.running.summary_only { known() } else { None };
                 }
             }
         }
@@ -86,9 +88,17 @@ impl Table {
     ) -> anyhow::Result<()> {
         let Self { tasks, records, open } = self;
         let temporaries = journal.temporaries().to_path_buf();
+        let begun = Begun::open(&temporaries)?;
+        open.sort_by_key(|&place| tasks[place].output.as_ref().is_ok_and(|output| begun.has(output)));
         workers.run(
             open,
-            |&place| plan.work(&tasks[place], &temporaries),
+            |&place| {
+                let task = &tasks[place];
+                if let Ok(output) = &task.output {
+                    begun.note(output);
+                }
+                plan.work(task, &temporaries)
+            },
             |index, done| {
                 let place = open[index];
                 let record = done.unwrap_or_else(|words| plan.panicked(&tasks[place], &words));
@@ -100,24 +110,27 @@ impl Table {
                 records[place] = Some(record);
                 Ok(())
             },
-        )
+        )?;
+        begun.finish();
+        Ok(())
+    }
+
+    /// How many meshes have points.
+    fn done(&self) -> usize {
+        self.records.iter().flatten().filter(|record| record.made().is_some()).count()
     }
 
     /// Says how the run went; fails if any mesh did.
-    fn conclude(&self, summary: &Path, skipped: usize, files: &Files) -> Outcome {
-        let count = |is: fn(Option<&Record>) -> bool| {
-            self.records.iter().filter(|record| is(record.as_ref())).count()
-        };
-        let pending = count(|record| record.is_none());
-        let failed = count(|record| record.is_some_and(|record| record.made().is_none()));
-        let done = self.records.len() - pending - failed;
+    fn conclude(&self, summary: &Path, before: usize, files: &Files) -> Outcome {
+        let done = self.done();
+        let pending = self.records.iter().filter(|record| record.is_none()).count();
+        let failed = self.records.len() - done - pending;
         let all = match self.records.len() {
             1 => "1 mesh".to_owned(),
             count => format!("{count} meshes"),
         };
-        files.say(&format!(
-            "{all}: {done} done, {skipped} of them before; {failed} failed, {pending} pending"
-        ));
+        files
+            .say(&format!("{all}: {done} done, {before} of them before; {failed} failed, {pending} pending"));
         files.say(&format!("wrote {}", summary.display()));
         if failed + pending > 0 {
             let pending = if pending > 0 { format!(" and {pending} not done") } else { String::new() };

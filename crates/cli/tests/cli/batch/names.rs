@@ -137,4 +137,6 @@ fn a_name_that_is_no_text_is_a_failure_of_its_own() {
     let rows = folder.summary("out/summary.csv");
     assert_eq!(column(&rows, "error_kind"), ["", "name", ""]);
     assert_eq!(column(&rows, "output"), ["a.ply", "", "c.ply"]);
+    assert_eq!(folder.run("batch in -o out -n 5 --summary-only").code, 1);
+    assert_eq!(column(&folder.summary("out/summary.csv"), "error_kind"), ["", "name", ""]);
 }

@@ -191,3 +191,19 @@ fn a_summary_alone_does_no_work() {
     folder.run("batch in -o out -n 10 --summary-only").says(&["1 of 3 meshes failed"]);
     assert_eq!(column(&folder.summary("out/summary.csv"), "status"), ["done", "done", "failed"]);
 }
+
+#[test]
+fn what_may_have_killed_a_run_comes_last() {
+    let folder = Folder::new();
+    for name in ["a", "b", "c"] {
+        folder.put(&format!("in/{name}.obj"), OCTAHEDRON);
+    }
+    folder.put("out/.ldwrap-batch/all.begun", "a.ply\nb.ply\n");
+    folder.put("out/.ldwrap-batch/2-of-2.begun", "x.ply\n");
+    folder.run("batch in -o out -n 10 --jobs 1").ok();
+    let order: Vec<_> =
+        folder.journal("out/journal.jsonl").into_iter().map(|record| record["output"].clone()).collect();
+    assert_eq!(order, ["c.ply", "a.ply", "b.ply"]);
+    assert_eq!(column(&folder.summary("out/summary.csv"), "output"), ["a.ply", "b.ply", "c.ply"]);
+    assert!(!folder.path("out/.ldwrap-batch/all.begun").exists());
+}

@@ -76,7 +76,8 @@ fn gnu_parallel_runs_the_parts() {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let paths = std::env::join_paths([program.to_path_buf()].into_iter().chain(std::env::split_paths(&path)));
     let path = paths.expect("a path");
-    let text = include_str!("../../../../../docs/BATCH.md");
+    let text = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/BATCH.md"))
+        .expect("docs/BATCH.md");
     let start = text.find("```sh\nparallel").expect("the commands") + "```sh\n".len();
     let commands = &text[start..start + text[start..].find("```").expect("their end")];
     assert!(commands.contains("--shard {}/4") && commands.contains("--summary-only"), "{commands}");
