@@ -41,7 +41,7 @@ pub(crate) fn read_detail(
     let bytes = bytes(&args.mesh, stdin).with_context(|| name.clone())?;
     let folder = if stdin { None } else { args.mesh.parent() };
     let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
-    let model = match args.mesh_format {
+    let model = match args.reading.mesh_format {
         Some(format) => read_model_as(format.into(), &bytes, detail, &resolver),
         None => read_model(&bytes, Some(&name), detail, &resolver),
     };
@@ -52,7 +52,7 @@ pub(crate) fn read_detail(
     let Model { soup, attributes } = model;
     drop(bytes);
     progress.begin("check", 1);
-    let options = CheckOptions { turn_outward: !args.keep_winding };
+    let options = CheckOptions { turn_outward: !args.reading.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
     Ok(Input { name, soup, mesh, repaired, attributes })
 }

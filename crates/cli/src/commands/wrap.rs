@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use anyhow::Context;
 use ldwrap::correct::Correction;
 use ldwrap::density::Density;
-use ldwrap::io::Detail;
 use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{self, Options, Run};
 use ldwrap::{Progress, SurfacePoint};
@@ -14,7 +13,7 @@ use crate::args::WrapArgs;
 use crate::commands::counted;
 use crate::exit::Outcome;
 use crate::input::{self, Input};
-use crate::job::{self, WrapOutputs};
+use crate::job::{self, Carried, WrapOutputs};
 use crate::output::Outputs;
 use crate::picture::{PreviewOptions, preview_png, strips_svg};
 use crate::points;
@@ -25,17 +24,16 @@ use crate::weights;
 
 /// Runs the command.
 pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
-    let options = job::options(args)?;
-    let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
+    let WrapArgs { mesh, placing, outputs } = args;
+    let options = job::options(placing)?;
+    let outputs = WrapOutputs::new(outputs, &mesh.mesh)?;
     let stages = Stages::new(quiet);
-    let carried = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
-    let selecting = if args.only.is_empty() { Detail::Shape } else { Detail::Attributes };
-    let detail = carried.max(selecting).max(weights::detail(&args.weights));
-    let input = input::read_detail(&args.mesh, detail, &args.only, &stages)?;
+    let carried = outputs.points.as_ref().map_or(&Carried::Usual, |points| &points.carried);
+    let input = input::read_detail(mesh, job::detail(placing, carried), &placing.only, &stages)?;
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    let density = weights::density(&args.weights, &input)?;
+    let density = weights::density(&placing.weights, &input)?;
     let run = pipeline::run_weighted(&input.mesh, &density, &options, &stages)
         .with_context(|| input.name.clone())?;
     stages.begin("irregularity", 0);
