@@ -125,7 +125,7 @@ impl<'a> Plan<'a> {
             strips: run.strips.strips.len(),
             points: run.samples.len(),
             d_m: number(run.d_m),
-            irregularity: Ratios::of(&run.irregularity),
+            irregularity: Ratios::of(&run.irregularity()),
             eta: eta.and_then(number),
             repairs: repairs(&input.repaired).map_err(trouble(Kind::Write))?,
         })

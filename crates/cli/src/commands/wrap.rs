@@ -99,7 +99,7 @@ fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<
 }
 
 fn summary(job: Job<'_>) -> Vec<String> {
-    let Job { input: Input { name, mesh, .. }, options, run, irregularity, density: _ } = job;
+    let Job { input: Input { name, mesh, .. }, run, irregularity, options: _, density: _ } = job;
     let Irregularity { bound, refined, exact } = irregularity;
     let Correction { projected, removed } = run.correction;
     let count = run.samples.len();
