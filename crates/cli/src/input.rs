@@ -43,20 +43,20 @@ pub(crate) fn read_detail(
     let bytes = bytes(&args.mesh, stdin).with_context(|| name.clone())?;
     let folder = if stdin { None } else { args.mesh.parent() };
     let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
-    let model = match args.mesh_format {
+    let model = match args.reading.mesh_format {
         Some(format) => read_model_as(format.into(), &bytes, detail, &resolver),
         None => read_model(&bytes, Some(&name), detail, &resolver),
     };
     let mut model = model.with_context(|| name.clone())?;
     let detected = || detect(&bytes, Some(name.strip_suffix(".gz").unwrap_or(&name)));
-    let format = args.mesh_format.map(MeshFormat::from).or_else(detected);
+    let format = args.reading.mesh_format.map(MeshFormat::from).or_else(detected);
     if !only.is_empty() {
         select(&mut model, only).with_context(|| name.clone())?;
     }
     let Model { soup, attributes } = model;
     drop(bytes);
     progress.begin("check", 1);
-    let options = CheckOptions { turn_outward: !args.keep_winding };
+    let options = CheckOptions { turn_outward: !args.reading.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
     Ok(Input { name, format, soup, mesh, repaired, attributes })
 }

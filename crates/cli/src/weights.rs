@@ -13,7 +13,7 @@ use ldwrap::pipeline::{Options, Request, Run, run_weighted};
 use ldwrap::refine::{Refined, refine};
 use ldwrap::{Progress, Sample, SurfaceMesh, SurfacePoint, quota};
 
-use crate::args::{WeightsArgs, WeightsBy, WeightsOf, WrapArgs};
+use crate::args::{PlacingArgs, WeightsArgs, WeightsBy, WeightsOf};
 use crate::input::Input;
 use crate::job::{self, Quota};
 
@@ -60,7 +60,7 @@ impl Ground {
 }
 
 /// Finds the part of the mesh that is asked for, its weights, and what each connected component is to get.
-pub(crate) fn prepare(args: &WrapArgs, input: Input, options: Options) -> anyhow::Result<Ground> {
+pub(crate) fn prepare(args: &PlacingArgs, input: Input, options: Options) -> anyhow::Result<Ground> {
     let input = match args.inside {
         Some(inside) => input.clip(inside)?,
         None => input,

@@ -9,6 +9,7 @@
 //! the others, for three functions on four shapes with 100 and 500 points), but whatever the seed they end near the same
 //! places, so all err alike and their scatter tells too little: their means were up to 50 standard errors off. So here the
 //! equalized set gives the value and the others tell how far it can be trusted.
+#![allow(clippy::print_stdout)]
 
 use std::error::Error;
 

@@ -5,6 +5,7 @@
 //! writes `clouds-1.npz` to `clouds-4.npz`; `numpy.load` finds in each `position` and `normal`, float32, 1024 x 3. Points
 //! in proportion to area, evenly spread, are the same surface to a network with fewer of them, and another seed is
 //! another look at the same surface: augmentation that invents nothing.
+#![allow(clippy::print_stdout)]
 
 use std::error::Error;
 

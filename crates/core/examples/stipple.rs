@@ -1,5 +1,6 @@
 //! Draws a mesh in dots, as engravers do: dark places get many, bright ones few.
 //! `cargo run --release -p ldwrap --example stipple -- assets/trefoil.ply 20000 trefoil.svg`
+#![allow(clippy::print_stdout)]
 
 use std::error::Error;
 use std::fmt::Write;

@@ -3,6 +3,7 @@
 //!
 //! Each disc lies in the tangent plane and is as large as the part of the surface nearest to its point, so all discs
 //! together have the area of the surface. The PLY file has `x y z nx ny nz radius`.
+#![allow(clippy::print_stdout)]
 
 use std::error::Error;
 use std::f64::consts::PI;

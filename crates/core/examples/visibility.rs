@@ -3,6 +3,7 @@
 //!
 //! Printed are, for some cameras, the visible share of the points, that of the area (found with 400,000 places), and the
 //! error that as many random points would have.
+#![allow(clippy::print_stdout)]
 
 use std::error::Error;
 

@@ -41,7 +41,7 @@
 //!
 //! // What the stages made.
 //! assert_eq!(run.strips.strips.len(), 1);
-//! assert!(run.irregularity.exact <= 1.0);
+//! assert!(run.irregularity().exact <= 1.0);
 //! for place in run.places(&mesh) {
 //!     assert!((0.97..=1.0 + 1e-12).contains(&place.length()));
 //! }

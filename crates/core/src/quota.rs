@@ -346,10 +346,10 @@ mod tests {
         let mesh = planted::mesh(&soup);
         assert_eq!(mesh.topology().components().count, 2);
         let middle = |p: DVec3, c: u32| p.x - if c == 0 { 0.5 } else { 1.0005 };
-        let of_face = mesh.topology().components().of_face;
+        let of_face = &mesh.topology().components().of_face;
         let weights: Vec<f64> = mesh
             .triangles()
-            .zip(&of_face)
+            .zip(of_face)
             .map(|([a, b, c], &component)| if middle((a + b + c) / 3.0, component) > 0.0 { 3.0 } else { 1.0 })
             .collect();
         let density = Density::of_faces(&mesh, &weights).unwrap();

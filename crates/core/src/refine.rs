@@ -257,7 +257,7 @@ mod tests {
             // Every third face lies somewhere; sizes differ by far.
             let lay = |face: FaceId| {
                 let size = f64::from(face.0 % 11) * 10.0;
-                (face.0 % 3 == 0).then_some([DVec2::ZERO, DVec2::X * size, DVec2::Y * size])
+                (face.0.is_multiple_of(3)).then_some([DVec2::ZERO, DVec2::X * size, DVec2::Y * size])
             };
             let fine = refine(&mesh, lay, 30.0, 1 << 20);
             let (old, new) = (mesh.topology(), fine.mesh().topology());

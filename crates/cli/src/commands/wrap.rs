@@ -3,16 +3,15 @@
 use std::path::PathBuf;
 
 use ldwrap::correct::Correction;
-use ldwrap::io::Detail;
 use ldwrap::irregularity::Irregularity;
-use ldwrap::pipeline::{Options, Run};
+use ldwrap::pipeline::Run;
 use ldwrap::{Progress, SurfacePoint};
 
 use crate::args::WrapArgs;
 use crate::commands::counted;
 use crate::exit::Outcome;
 use crate::input::{self, Input};
-use crate::job::{self, WrapOutputs};
+use crate::job::{self, Carried, WrapOutputs};
 use crate::output::Outputs;
 use crate::picture::{PreviewOptions, preview_png, strips_svg};
 use crate::points;
@@ -23,20 +22,22 @@ use crate::weights::{self, Ground};
 
 /// Runs the command.
 pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
-    let options = job::options(args)?;
-    let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
+    let WrapArgs { mesh, placing, outputs } = args;
+    let options = job::options(placing)?;
+    let outputs = WrapOutputs::new(outputs, &mesh.mesh)?;
     let stages = Stages::new(quiet);
-    let carried = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
-    let selecting = if args.only.is_empty() { Detail::Shape } else { Detail::Attributes };
-    let detail = carried.max(selecting).max(weights::detail(&args.weights));
-    let input = input::read_detail(&args.mesh, detail, &args.only, &stages)?;
+    let carried = outputs.points.as_ref().map_or(&Carried::Usual, |points| &points.carried);
+    let input = input::read_detail(mesh, job::detail(placing, carried), &placing.only, &stages)?;
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    let ground = weights::prepare(args, input, options)?;
+    let ground = weights::prepare(placing, input, options)?;
     let run = ground.run(&stages)?;
-    let files = write(&ground, &run, &outputs, &stages)?;
-    for line in summary(&ground.input, &ground.options, &run) {
+    stages.begin("irregularity", 0);
+    let irregularity = run.irregularity();
+    let job = Job { ground: &ground, run: &run, irregularity };
+    let files = write(job, &outputs, &stages)?;
+    for line in summary(job) {
         stages.say(&line);
     }
     for file in files {
@@ -45,7 +46,16 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     Ok(())
 }
 
-fn write(ground: &Ground, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
+/// What was done.
+#[derive(Clone, Copy)]
+struct Job<'a> {
+    ground: &'a Ground,
+    run: &'a Run,
+    irregularity: Irregularity,
+}
+
+fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
+    let Job { ground, run, irregularity } = job;
     let Ground { input, density, options, .. } = ground;
     let Input { mesh, repaired, .. } = input;
     let samples = ground.lifted(&run.samples);
@@ -54,7 +64,7 @@ fn write(ground: &Ground, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> a
         stages.begin("draw", 0);
     }
     if let Some(destination) = &wanted.strips {
-        let svg = strips_svg(&run.strips, &run.domain, &run.samples, options.tolerance * run.d_m);
+        let svg = strips_svg(&run.strips, &run.domain, &run.samples, run.tolerance);
         outputs.stage(destination, svg.into_bytes())?;
     }
     if let Some(destination) = &wanted.preview {
@@ -71,15 +81,23 @@ fn write(ground: &Ground, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> a
     });
     let seconds = stages.finish();
     if let Some(destination) = &wanted.report {
-        let report = Report::new(MeshReport::new(mesh, repaired), options, density, run, quality, seconds);
+        let report = Report::new(
+            MeshReport::new(mesh, repaired),
+            options,
+            density,
+            run,
+            irregularity,
+            quality,
+            seconds,
+        );
         outputs.stage(destination, report::json(&report)?)?;
     }
     outputs.commit()
 }
 
-fn summary(input: &Input, options: &Options, run: &Run) -> Vec<String> {
-    let Input { name, mesh, .. } = input;
-    let Irregularity { bound, refined, exact } = run.irregularity;
+fn summary(job: Job<'_>) -> Vec<String> {
+    let Job { ground: Ground { input: Input { name, mesh, .. }, .. }, run, irregularity } = job;
+    let Irregularity { bound, refined, exact } = irregularity;
     let Correction { projected, removed } = run.correction;
     let count = run.samples.len();
     let mut lines = vec![
@@ -91,7 +109,7 @@ fn summary(input: &Input, options: &Options, run: &Run) -> Vec<String> {
             run.d_m
         ),
         format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact"),
-        format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), options, run)),
+        format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), run)),
         format!("corrected: {projected} projected, {removed} removed"),
     ];
     if let Some(equalize) = &run.equalize {
