@@ -229,7 +229,7 @@ pub fn run_weighted(
         domain: &domain,
         sequence: options.sequence,
         shift: sequence::shift_of_seed(options.seed),
-        selection: options.selection,
+        choice: options.selection.choice(options.equalize.is_some()),
         tolerance,
     };
     let Scattered { samples, correction, d_m } = scattering.meet(options.request)?;
