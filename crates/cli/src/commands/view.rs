@@ -19,7 +19,7 @@ pub(crate) fn run(args: &ViewArgs, quiet: bool) -> Outcome {
     }
     // A mesh that cannot be used is told here, as every command does, and not by a window.
     let stages = Stages::new(quiet);
-    let mesh = MeshArgs { mesh: args.mesh.clone(), mesh_format: None, keep_winding: false };
+    let mesh = MeshArgs { mesh: args.mesh.clone(), mesh_format: None, keep_winding: false, max_memory: None };
     input::read(&mesh, &stages)?;
     stages.finish();
     let viewer = find()?;

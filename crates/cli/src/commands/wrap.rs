@@ -35,6 +35,7 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
+    job::points_fit(&options, input.mesh.area(), args.mesh.max_memory)?;
     let density = weights::density(&args.weights, &input)?;
     let run = pipeline::run_weighted(&input.mesh, &density, &options, &stages)
         .with_context(|| input.name.clone())?;

@@ -3,6 +3,7 @@
 mod detect;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+mod limits;
 #[cfg(feature = "io")]
 pub mod mesh_out;
 #[cfg(feature = "obj")]
@@ -18,4 +19,7 @@ mod select;
 pub mod stl;
 
 pub use detect::{MeshFormat, detect};
-pub use read::{Detail, Model, Place, ReadError, Resolver, read_mesh, read_model, read_model_as};
+pub use limits::Limits;
+pub use read::{
+    Detail, Model, Place, ReadError, ReadOptions, Resolver, read_mesh, read_model, read_model_as, read_model_with,
+};

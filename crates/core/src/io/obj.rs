@@ -9,6 +9,7 @@ use glam::DVec3;
 use tobj::{LoadError, LoadOptions};
 
 use crate::io::detect::MeshFormat;
+use crate::io::limits::Limits;
 use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
@@ -18,7 +19,7 @@ use crate::mesh::PolygonSoup;
 /// # Errors
 /// [`ReadError`]: with the line.
 pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
-    read_text(&text(bytes))
+    read_text(&text(bytes), &Limits::default())
 }
 
 /// Reads an OBJ file with the normals (`vn`), texture coordinates (`vt`) and colours (three sRGB numbers from 0 to 1
@@ -29,19 +30,30 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
 /// # Errors
 /// [`ReadError`]: with the line; a material library or picture that the resolver does not have.
 pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Result<Model, ReadError> {
+    read_within(bytes, detail, &Limits::default(), resolver)
+}
+
+pub(super) fn read_within(
+    bytes: &[u8],
+    detail: Detail,
+    limits: &Limits,
+    resolver: &Resolver<'_>,
+) -> Result<Model, ReadError> {
     let text = text(bytes);
-    let mut model = Model::from(read_text(&text)?);
+    let mut model = Model::from(read_text(&text, limits)?);
     if detail >= Detail::Attributes {
         let libraries = attributes::read(&text, &mut model)?;
         if detail >= Detail::Textures {
-            material::load(&libraries, &mut model.attributes, resolver)?;
+            material::load(&libraries, &mut model.attributes, limits, resolver)?;
         }
     }
     Ok(model)
 }
 
-fn read_text(text: &str) -> Result<PolygonSoup, ReadError> {
-    let plain = plain(text);
+fn read_text(text: &str, limits: &Limits) -> Result<PolygonSoup, ReadError> {
+    let (plain, vertices) = plain(text);
+    limits.vertices(MeshFormat::Obj, Place::File, vertices)?;
+    let plain = behind_all(vertices, plain);
     let mut lines = LineCounter { rest: plain.as_bytes(), line: 0 };
     let options = LoadOptions { triangulate: false, ..LoadOptions::default() };
     let (models, _) = tobj::load_obj_buf(&mut lines, &options, |_| Err(LoadError::GenericFailure))
@@ -58,17 +70,16 @@ fn read_text(text: &str) -> Result<PolygonSoup, ReadError> {
         let all_vertices = arities.next().unwrap_or_default();
         corners.by_ref().take(all_vertices as usize).for_each(drop);
         for arity in arities {
-            push_polygon(&mut soup, corners.by_ref().take(arity as usize), MeshFormat::Obj)?;
+            push_polygon(&mut soup, corners.by_ref().take(arity as usize), MeshFormat::Obj, limits)?;
         }
     }
     Ok(soup)
 }
 
-/// The same lines with nothing but positions and corners, behind a face of all vertices. The library stops at what
-/// is none of our business: colours at some of the vertices, comments behind a face, materials without a name; it
-/// takes polylines for faces; and it renumbers the vertices as faces use them, which the first face makes the order
-/// of the file.
-fn plain(text: &str) -> String {
+/// The same lines with nothing but positions and corners, and how many vertices there are. The library stops at what
+/// is none of our business: colours at some of the vertices, comments behind a face, materials without a name; and it
+/// takes polylines for faces.
+fn plain(text: &str) -> (String, usize) {
     let mut plain = String::with_capacity(2 * text.len());
     let mut vertices = 0;
     for_each_statement(text, |statement, line_breaks| {
@@ -94,11 +105,14 @@ fn plain(text: &str) -> String {
         }
         plain.extend(std::iter::repeat_n('\n', line_breaks));
     });
-    let mut all: String =
-        (1..=vertices).fold("f".into(), |all, vertex: usize| all + " " + &vertex.to_string());
-    all.push('\n');
-    plain.insert_str(0, &all);
-    plain
+    (plain, vertices)
+}
+
+/// The lines behind a face of all vertices: the library renumbers the vertices as faces use them, which makes this the
+/// order of the file.
+fn behind_all(vertices: usize, plain: String) -> String {
+    let all: String = (1..=vertices).fold("f".into(), |all, vertex: usize| all + " " + &vertex.to_string());
+    all + "\n" + &plain
 }
 
 /// Calls `f` with every line, and how many lines of the file it takes: those that end in `\` go on in the next.

@@ -17,6 +17,7 @@ use std::io;
 
 use glam::DVec3;
 
+use crate::io::read::brief;
 use crate::mesh::SurfaceMesh;
 use crate::sample::Sample;
 
@@ -296,7 +297,8 @@ impl Points {
     }
 
     fn malformed(&self, place: PointPlace, problem: impl Into<String>) -> PointsError {
-        PointsError::Malformed { format: self.format, place, problem: problem.into() }
+        // What a library says may quote the file.
+        PointsError::Malformed { format: self.format, place, problem: brief(&problem.into()) }
     }
 }
 
