@@ -42,8 +42,7 @@ pub(crate) fn read_detail(
     let bytes = bytes(&args.mesh, stdin, limits.bytes).with_context(|| name.clone())?;
     let folder = if stdin { None } else { args.mesh.parent() };
     let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
-    let reading =
-        ReadOptions { format: args.mesh_format.map(Into::into), name: Some(&name), detail, limits };
+    let reading = ReadOptions { format: args.mesh_format.map(Into::into), name: Some(&name), detail, limits };
     let mut model = read_model_with(&bytes, &reading, &resolver).with_context(|| name.clone())?;
     if !only.is_empty() {
         select(&mut model, only).with_context(|| name.clone())?;
@@ -114,7 +113,9 @@ fn beside(folder: &Path, file: &str) -> Result<Vec<u8>, String> {
 fn bytes(path: &Path, stdin: bool, most: u64) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let too_large = || {
-        anyhow!("has more than {most} bytes, which is the limit; split the mesh, or raise the limit (--max-memory)")
+        anyhow!(
+            "has more than {most} bytes, which is the limit; split the mesh, or raise the limit (--max-memory)"
+        )
     };
     if stdin {
         let input = standard_input().lock();

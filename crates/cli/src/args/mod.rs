@@ -287,7 +287,8 @@ fn size(text: &str) -> Result<u64, String> {
         Some((end, 't' | 'T')) => (&text[..end], 40),
         _ => (text, 0),
     };
-    let number: u64 = number.parse().map_err(|_| "must be a whole number of bytes, as 500M or 8G".to_owned())?;
+    let number: u64 =
+        number.parse().map_err(|_| "must be a whole number of bytes, as 500M or 8G".to_owned())?;
     number
         .checked_mul(1 << shift)
         .filter(|&bytes| bytes > 0)

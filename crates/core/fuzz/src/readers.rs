@@ -16,7 +16,9 @@ const PICTURE: &[u8] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x01\0\0\0\x01\x08\x
 /// What lies beside the file.
 fn beside(address: &str) -> Result<Vec<u8>, String> {
     match address.rsplit_once('.') {
-        Some((_, "mtl")) => Ok(b"newmtl a\nKd 0.5 nan 2\nmap_Kd -s 2 -o 1 1 a.png\nnewmtl b\nd 0.5\n".to_vec()),
+        Some((_, "mtl")) => {
+            Ok(b"newmtl a\nKd 0.5 nan 2\nmap_Kd -s 2 -o 1 1 a.png\nnewmtl b\nd 0.5\n".to_vec())
+        }
         Some((_, "png")) => Ok(PICTURE.to_vec()),
         Some((_, "bin")) => Ok((0..=255).cycle().take(1024).collect()),
         Some((_, "jpg")) => Ok(b"\xff\xd8\xff\xe0 no picture".to_vec()),
@@ -49,7 +51,9 @@ fn check(read: impl Fn(Detail) -> Result<Model, ReadError>) {
                 check_soup(&model.soup);
                 match before {
                     Some(Err(error)) => panic!("{detail:?} reads what less does not: {error}"),
-                    Some(Ok(less)) => assert!(bits(&less.soup) == bits(&model.soup), "{detail:?}: another shape"),
+                    Some(Ok(less)) => {
+                        assert!(bits(&less.soup) == bits(&model.soup), "{detail:?}: another shape")
+                    }
                     None => {}
                 }
                 look(model);
@@ -67,7 +71,11 @@ fn bits(soup: &PolygonSoup) -> (Vec<[u64; 3]>, &[u32], &[u32]) {
 
 fn check_soup(soup: &PolygonSoup) {
     assert!(soup.ends.is_sorted(), "the ends ascend");
-    assert_eq!(soup.ends.last().map_or(0, |&end| end as usize), soup.corners.len(), "all corners are in a polygon");
+    assert_eq!(
+        soup.ends.last().map_or(0, |&end| end as usize),
+        soup.corners.len(),
+        "all corners are in a polygon"
+    );
 }
 
 /// A message is one line that a person can read, with what is wrong and what to do.

@@ -53,8 +53,12 @@ pub(super) struct Scale<'a> {
     pub(super) middle: DVec3,
 }
 
-/// No side of a tile is longer than this many distances of the points there.
+/// No side of a tile is longer than this many distances of the points there, but for needles: see [`MOST`].
 const LONGEST: f64 = 0.7;
+
+/// A face is cut into about this many tiles at most, and as many more for each point that is due on it: a needle 1e12 times
+/// as long as wide would make millions. No face shorter than 22 distances of the points comes near it.
+const MOST: f64 = 64.0;
 
 /// Where few points are due, tiles and normals are scaled as if this share of the mean density were.
 const SPARSEST: f64 = 0.1;
@@ -83,7 +87,7 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
             let normals = normals.of(face).map(|n| n * (scale.bend * distance));
             let whole =
                 std::array::from_fn(|c| Corner { place: places[c], normal: normals[c], density: density[c] });
-            split(whole, LONGEST * distance, &mut |corners: [Corner; 3]| {
+            split(whole, longest_side(places, distance), &mut |corners: [Corner; 3]| {
                 let places = corners.map(|c| c.place);
                 let area = triangle::area(places[0], places[1], places[2]);
                 let mass = area * (corners[0].density + corners[1].density + corners[2].density) / 3.0;
@@ -146,6 +150,14 @@ impl Corner {
             density: (self.density + other.density) * 0.5,
         }
     }
+}
+
+/// How long the sides of a face's tiles may be.
+fn longest_side([a, b, c]: [DVec3; 3], distance: f64) -> f64 {
+    let length = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let due = triangle::area(a, b, c) / (distance * distance);
+    // Halving makes tiles half as long as they may be.
+    (LONGEST * distance).max(2.0 * length / (MOST * (1.0 + due)))
 }
 
 /// Halves a triangle across its longest side until no side is longer than `longest`.

@@ -127,6 +127,7 @@ fn for_each_mesh(
 /// The checked document and the binary chunk.
 fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
     use gltf::json::validation::{Error, Validate};
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if bytes.starts_with(b"glTF") {
         let length = bytes.get(8..12).map(|l| u32::from_le_bytes([l[0], l[1], l[2], l[3]]) as usize);
         if length.is_none_or(|length| length < 20 || length > bytes.len()) {
@@ -137,7 +138,6 @@ fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
             });
         }
     }
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes)
         .map_err(|error| malformed(Place::File, brief(&error.to_string())))?;
     let root = document.as_json();

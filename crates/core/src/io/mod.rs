@@ -21,5 +21,6 @@ pub mod stl;
 pub use detect::{MeshFormat, detect};
 pub use limits::Limits;
 pub use read::{
-    Detail, Model, Place, ReadError, ReadOptions, Resolver, read_mesh, read_model, read_model_as, read_model_with,
+    Detail, Model, Place, ReadError, ReadOptions, Resolver, read_mesh, read_model, read_model_as,
+    read_model_with,
 };

@@ -217,6 +217,19 @@ mod tests {
         assert_eq!(read(text.replace('\n', "\r\n").as_bytes()).unwrap(), soup);
     }
 
+    /// Found by fuzzing: polygons and what belongs to them were told apart by different white space.
+    #[test]
+    fn attributes_keep_pace_with_the_polygons() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf\u{c}1 2 3\nusemtl b\n\u{a0}f 1 2 3\n\u{b}f 1 2 3\nf 3 2 1\n\
+                    f#1 2 3\nusemtl c\nf 2 1 3\n";
+        let model = read_model(text.as_bytes(), Detail::Attributes, &|_| Err(String::new())).unwrap();
+        let materials = &model.attributes.material_of;
+        let of: Vec<_> = (0..model.soup.polygon_count())
+            .map(|p| (model.soup.polygon(p).len(), materials.get(p).map(|m| &*materials.names()[m])))
+            .collect();
+        assert_eq!(of, [(3, Some("a")), (3, Some("b")), (0, Some("b")), (3, Some("c"))]);
+    }
+
     #[test]
     fn double_precision_is_kept() {
         let soup = read(b"v 0.1 1e-30 123456789.125\nv 0 0 0\nv 1 0 0\nf 1 2 3").unwrap();

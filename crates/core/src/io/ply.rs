@@ -202,12 +202,7 @@ fn add_faces<'a>(
 }
 
 /// Every corner of a strip makes a triangle with the two before it, turned every second time; -1 starts anew.
-fn add_strip(
-    soup: &mut PolygonSoup,
-    index: usize,
-    strip: &[i64],
-    limits: &Limits,
-) -> Result<(), ReadError> {
+fn add_strip(soup: &mut PolygonSoup, index: usize, strip: &[i64], limits: &Limits) -> Result<(), ReadError> {
     for run in strip.split(|&corner| corner == -1) {
         for (i, triangle) in run.windows(3).enumerate() {
             let [a, b, c] =

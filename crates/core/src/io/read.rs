@@ -291,14 +291,15 @@ fn unpacked(bytes: &[u8], most: u64) -> Result<Cow<'_, [u8]>, ReadError> {
     {
         use std::io::Read;
         let mut unpacked = Vec::new();
-        flate2::read::MultiGzDecoder::new(bytes).take(most.saturating_add(1)).read_to_end(&mut unpacked).map_err(
-            |error| ReadError::Compressed {
+        flate2::read::MultiGzDecoder::new(bytes)
+            .take(most.saturating_add(1))
+            .read_to_end(&mut unpacked)
+            .map_err(|error| ReadError::Compressed {
                 problem: format!(
                     "{}; the file is damaged or was cut off: copy it again",
                     brief(&error.to_string())
                 ),
-            },
-        )?;
+            })?;
         if unpacked.len() as u64 > most {
             let problem = format!(
                 "it holds more than {most} bytes, which is the limit; split the mesh, or raise the limit \
@@ -374,23 +375,22 @@ pub(super) struct Picture<'a> {
 #[cfg(any(feature = "obj", feature = "gltf", feature = "ply"))]
 impl Picture<'_> {
     /// Adds it to the others; gives its index.
-    pub(super) fn decode(
-        self,
-        attributes: &mut MeshAttributes,
-        limits: &Limits,
-    ) -> Result<usize, ReadError> {
+    pub(super) fn decode(self, attributes: &mut MeshAttributes, limits: &Limits) -> Result<usize, ReadError> {
         let Self { bytes, format, place, called, advice } = self;
         let texels = |image: &Image| u64::from(image.size().0) * u64::from(image.size().1);
         let taken: u64 = attributes.images.iter().map(texels).sum();
-        let image = Image::decode_within(bytes, limits.texels.saturating_sub(taken)).map_err(|error| match error {
-            ImageError::TooLarge => {
-                ReadError::TooLarge { format, place, what: "texels", limit: limits.texels }
-            }
-            error => {
-                let what = format!("{called} ({})", brief(&error.to_string()));
-                ReadError::Unsupported { format, place, what, advice }
-            }
-        })?;
+        let image =
+            Image::decode_within(bytes, limits.texels.saturating_sub(taken)).map_err(
+                |error| match error {
+                    ImageError::TooLarge => {
+                        ReadError::TooLarge { format, place, what: "texels", limit: limits.texels }
+                    }
+                    error => {
+                        let what = format!("{called} ({})", brief(&error.to_string()));
+                        ReadError::Unsupported { format, place, what, advice }
+                    }
+                },
+            )?;
         attributes.images.push(image);
         Ok(attributes.images.len() - 1)
     }

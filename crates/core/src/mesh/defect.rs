@@ -43,7 +43,9 @@ pub enum MeshError {
     #[error("the mesh has no face: points are spread over faces, so export it with them")]
     NoFace,
     /// No polygon has an area.
-    #[error("none of the {polygons} faces of the mesh has an area: look whether its vertices all lie on a line")]
+    #[error(
+        "none of the {polygons} faces of the mesh has an area: look whether its vertices all lie on a line"
+    )]
     NoArea {
         /// How many polygons there are.
         polygons: usize,
@@ -58,8 +60,10 @@ pub enum MeshError {
         position: [f64; 3],
     },
     /// A corner names a vertex that does not exist.
-    #[error("corner {corner} of face {polygon} is vertex {index}, but there are only {vertices} vertices (counted from 0): the file is \
-         damaged or was written wrong; export it again")]
+    #[error(
+        "corner {corner} of face {polygon} is vertex {index}, but there are only {vertices} vertices (counted from 0): the file is \
+         damaged or was written wrong; export it again"
+    )]
     IndexOutOfRange {
         /// The polygon.
         polygon: usize,

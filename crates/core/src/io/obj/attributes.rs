@@ -25,6 +25,7 @@ pub(super) fn read(text: &str, model: &mut Model) -> Result<Vec<String>, ReadErr
         return Err(ReadError::Malformed { format: MeshFormat::Obj, place: Place::Line(line), problem });
     }
     debug_assert_eq!(reader.corners, model.soup.corners.len());
+    debug_assert_eq!(reader.polygons, model.soup.polygon_count());
     let Reader { mut attributes, uv, color_of, libraries, .. } = reader;
     attributes.uv = vec![uv];
     for (corner, &vertex) in model.soup.corners.iter().enumerate() {
@@ -52,8 +53,7 @@ struct Reader {
 
 impl Reader {
     fn statement(&mut self, statement: &str) -> Result<(), String> {
-        let trimmed = statement.trim();
-        let (keyword, rest) = trimmed.split_once([' ', '\t']).unwrap_or((trimmed, ""));
+        let (keyword, rest) = keyword(statement);
         match keyword {
             "v" => {
                 let color = match numbers::<6>(rest) {
@@ -104,6 +104,14 @@ impl Reader {
         self.polygons += 1;
         Ok(())
     }
+}
+
+/// The keyword and what follows it, told apart exactly as where the polygons are read: by what ASCII calls white space,
+/// and `#`.
+fn keyword(statement: &str) -> (&str, &str) {
+    let statement = statement.trim_ascii_start();
+    let end = statement.find(|c: char| c.is_ascii_whitespace() || c == '#').unwrap_or(statement.len());
+    statement.split_at(end)
 }
 
 /// The index of a name that is not empty.

@@ -225,7 +225,7 @@ pub enum PointsError {
         problem: String,
     },
     /// A coordinate is infinite or not a number.
-    #[error("{format}, {place}: the position {position} is not finite")]
+    #[error("{format}, {place}: the position ({:?}, {:?}, {:?}) is not finite", .position.x, .position.y, .position.z)]
     NotFinite {
         /// The format.
         format: PointFormat,

@@ -1,11 +1,19 @@
 //! Hostile and broken input: the inputs that fuzzing kept, and a table of everything that files do wrong.
 
-#[path = "checks.rs"]
+#[allow(unreachable_pub)]
+#[path = "../checks.rs"]
 mod checks;
-#[path = "../crates/core/fuzz/src/readers.rs"]
+// The fuzz targets call them from another crate.
+#[allow(unreachable_pub)]
+#[path = "../../crates/core/fuzz/src/readers.rs"]
 mod readers;
-#[path = "../crates/core/fuzz/src/soups.rs"]
+#[allow(unreachable_pub)]
+#[path = "../../crates/core/fuzz/src/soups.rs"]
 mod soups;
+
+mod files;
+mod meshes;
+mod table;
 
 use std::fs;
 use std::path::{Path, PathBuf};
