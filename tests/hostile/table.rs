@@ -56,9 +56,7 @@ impl Case {
 
 /// What happens, in words; an `Err` if that is not what must.
 pub(crate) fn happens(case: &Case) -> Result<String, String> {
-    let t = std::time::Instant::now();
     let outcome = soup(&case.input).and_then(|soup| points(&case.what, &soup));
-    eprintln!("TIME {:.2} {}", t.elapsed().as_secs_f64(), case.what);
     // As the program tells it.
     let outcome = match &case.input {
         Input::File { name, .. } => outcome.map_err(|error| format!("{name}: {error}")),

@@ -44,7 +44,8 @@ pub enum MeshError {
     NoFace,
     /// No polygon has an area.
     #[error(
-        "none of the {polygons} faces of the mesh has an area: look whether its vertices all lie on a line"
+        "none of the {polygons} faces of the mesh has an area beyond the rounding of its coordinates: look whether its \
+         vertices all lie on a line, or move it nearer to the origin"
     )]
     NoArea {
         /// How many polygons there are.
