@@ -84,3 +84,30 @@ pub fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> f64 {
 pub fn segment_distance(a: DVec2, b: DVec2, p: DVec2) -> f64 {
     p.distance(a + (b - a) * nearest_on_segment(a, b, p))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A place on a needle is found again along it to 1e-9 of its length, whatever its corners are called.
+    #[test]
+    fn barycentric_coordinates_of_needles() {
+        for exponent in 0..16 {
+            let long = DVec2::new(0.6, 0.8) * libm::exp10(f64::from(exponent));
+            let corners = [DVec2::ZERO, long, long * 0.25 + DVec2::new(-0.8, 0.6)];
+            for first in 0..3 {
+                let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
+                for weights in
+                    [[0.25, 0.25, 0.5], [0.125, 0.875, 0.0], [0.0, 0.5, 0.5], [0.5, 0.46875, 0.03125]]
+                {
+                    let place = |w: [f64; 3]| a * w[0] + b * w[1] + c * w[2];
+                    let found = barycentric(a, b, c, place(weights));
+                    assert!(found.iter().all(|w| (0.0..=1.0).contains(w)), "{found:?}");
+                    assert!((found.iter().sum::<f64>() - 1.0).abs() <= 1e-15, "{found:?}");
+                    let off = place(found).distance(place(weights));
+                    assert!(off <= 1e-9 * long.length() + 1e-15, "1e{exponent}: {off:e}");
+                }
+            }
+        }
+    }
+}

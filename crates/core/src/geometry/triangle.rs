@@ -110,3 +110,26 @@ fn nearest_inside(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> [f64; 3] {
     let w = vc / sum;
     [(1.0 - v - w).max(0.0), v, w]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point on a needle is found again, to its height.
+    #[test]
+    fn nearest_on_needles() {
+        for exponent in 0..14 {
+            let aspect = libm::exp10(f64::from(exponent));
+            let [a, b, c] =
+                [DVec3::ZERO, DVec3::new(0.8, -0.36, -0.48), DVec3::new(0.6, 0.48, 0.64) * aspect];
+            for weights in [[0.25, 0.25, 0.5], [0.0, 0.125, 0.875], [0.5, 0.0, 0.5], [0.03125, 0.46875, 0.5]]
+            {
+                let p = at(a, b, c, weights);
+                let found = nearest(a, b, c, p);
+                assert!(found.iter().all(|w| (0.0..=1.0).contains(w)), "{found:?}");
+                let off = at(a, b, c, found).distance(p);
+                assert!(off <= 1.0, "{aspect:e}: {off:e}");
+            }
+        }
+    }
+}

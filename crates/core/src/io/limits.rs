@@ -29,9 +29,8 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// What fits in so many bytes of memory, with room to check and to sample it: a mesh takes about 430 bytes a triangle
-    /// for all stages up to wrapping (a sphere of a million triangles), a point and a text file some hundred
-    /// bytes a number of bytes. Never above the default, for 32-bit indices and addresses have an end.
+    /// What fits in so many bytes of memory, with room to check and to sample it: a sphere of a million triangles took 430
+    /// bytes a triangle for all stages up to wrapping. Never above the default.
     pub fn for_memory(bytes: u64) -> Self {
         let most = Self::default();
         let count = |each: u64, most: usize| usize::try_from(bytes / each).unwrap_or(most).min(most);
@@ -62,4 +61,38 @@ fn within(
     limit: u64,
 ) -> Result<(), ReadError> {
     if count > limit { Err(ReadError::TooLarge { format, place, what, limit }) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::{Detail, ReadOptions, read_model_with};
+
+    fn read(text: &str, limits: Limits) -> Result<usize, ReadError> {
+        let options = ReadOptions { limits, detail: Detail::Textures, ..ReadOptions::default() };
+        read_model_with(text.as_bytes(), &options, &|_| Err(String::new()))
+            .map(|model| model.soup.polygon_count())
+    }
+
+    #[test]
+    fn exactly_as_much_as_the_limits_allow() {
+        let text = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+        let enough = Limits { bytes: text.len() as u64, vertices: 3, corners: 3, texels: 0 };
+        assert_eq!(read(text, enough), Ok(1));
+        let what = |limits| match read(text, limits) {
+            Err(ReadError::TooLarge { what, limit, .. }) => (what, limit),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(what(Limits { vertices: 2, ..enough }), ("vertices", 2));
+        assert_eq!(what(Limits { corners: 2, ..enough }), ("corners", 2));
+        let bytes = enough.bytes - 1;
+        assert_eq!(what(Limits { bytes, ..enough }), ("bytes", bytes));
+    }
+
+    #[test]
+    fn memory_as_limits() {
+        assert_eq!(Limits::for_memory(u64::MAX), Limits::default());
+        let small = Limits::for_memory(3 << 20);
+        assert_eq!((small.bytes, small.vertices), ((3 << 20) / 4, (3 << 20) / 150));
+    }
 }
