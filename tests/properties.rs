@@ -257,7 +257,11 @@ proptest! {
 fn bits(run: &Run) -> String {
     format!(
         "{:?} {:?} {:?} {:?} {:?}",
-        run.samples, run.correction, run.irregularity, run.equalize, run.domain
+        run.samples,
+        run.correction,
+        run.irregularity(),
+        run.equalize,
+        run.domain
     )
 }
 
@@ -345,7 +349,7 @@ proptest! {
         prop_assert_eq!(&a.segmentation, &b.segmentation);
         prop_assert_eq!(a.samples.len(), b.samples.len());
         prop_assert_eq!(a.correction, b.correction);
-        prop_assert!((a.irregularity.bound / b.irregularity.bound - 1.0).abs() < 1e-6);
+        prop_assert!((a.irregularity().bound / b.irregularity().bound - 1.0).abs() < 1e-6);
         for (p, q) in a.samples.iter().zip(&b.samples) {
             prop_assert_eq!((p.point.face, p.strip, p.origin), (q.point.face, q.strip, q.origin));
         }

@@ -38,11 +38,12 @@ pub(crate) fn read_detail(
     let stdin = args.mesh.as_os_str() == "-";
     let name = if stdin { "stdin".to_owned() } else { args.mesh.display().to_string() };
     progress.begin("read", 1);
-    let limits = args.max_memory.map(Limits::for_memory).unwrap_or_default();
+    let limits = args.reading.max_memory.map(Limits::for_memory).unwrap_or_default();
     let bytes = bytes(&args.mesh, stdin, limits.bytes).with_context(|| name.clone())?;
     let folder = if stdin { None } else { args.mesh.parent() };
     let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
-    let reading = ReadOptions { format: args.mesh_format.map(Into::into), name: Some(&name), detail, limits };
+    let reading =
+        ReadOptions { format: args.reading.mesh_format.map(Into::into), name: Some(&name), detail, limits };
     let mut model = read_model_with(&bytes, &reading, &resolver).with_context(|| name.clone())?;
     if !only.is_empty() {
         select(&mut model, only).with_context(|| name.clone())?;
@@ -50,7 +51,7 @@ pub(crate) fn read_detail(
     let Model { soup, attributes } = model;
     drop(bytes);
     progress.begin("check", 1);
-    let options = CheckOptions { turn_outward: !args.keep_winding };
+    let options = CheckOptions { turn_outward: !args.reading.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
     Ok(Input { name, soup, mesh, repaired, attributes })
 }

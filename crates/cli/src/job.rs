@@ -11,11 +11,12 @@ use ldwrap::segment::SegmentOptions;
 use ldwrap::sequence::Sequence;
 
 use crate::args::{
-    AttributeArg, ForViewsArgs, OrderArg, RequestArgs, SegmentArgs, SelectArg, SequenceArg, SequenceArgs,
-    WrapArgs, WrapOutputArgs,
+    AttributeArg, ForViewsArgs, OrderArg, PlacingArgs, RequestArgs, SegmentArgs, SelectArg, SequenceArg,
+    SequenceArgs, WrapOutputArgs,
 };
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
+use crate::weights;
 
 /// The points of a `wrap` run: where they go, in which format.
 #[derive(Clone, Debug)]
@@ -38,7 +39,7 @@ pub(crate) enum Carried {
 
 impl Carried {
     /// How much must be read of the mesh for it.
-    pub(crate) fn detail(&self) -> Detail {
+    fn detail(&self) -> Detail {
         match self {
             Self::Usual => Detail::Shape,
             Self::Named(names) if names.contains(&Attribute::Color) => Detail::Textures,
@@ -87,10 +88,11 @@ fn point_output(path: &Path, args: &WrapOutputArgs, targets: &mut Targets) -> Ou
         }
         (None, Destination::File(path)) => point_format(path)?,
     };
-    Ok(PointOutput { destination, format, carried: carried(&args.attributes, format)? })
+    Ok(PointOutput { destination, format, carried: carried(&args.attributes.attributes, format)? })
 }
 
-fn carried(arguments: &[AttributeArg], format: PointFormat) -> Outcome<Carried> {
+/// What the arguments ask points in this format to carry.
+pub(crate) fn carried(arguments: &[AttributeArg], format: PointFormat) -> Outcome<Carried> {
     refuse_repeated("--attributes", arguments, |argument| match argument {
         AttributeArg::All => "all".to_owned(),
         AttributeArg::One(attribute) => attribute.to_string(),
@@ -132,7 +134,7 @@ fn point_format(path: &Path) -> Outcome<PointFormat> {
 }
 
 /// Everything that decides the points.
-pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
+pub(crate) fn options(args: &PlacingArgs) -> Outcome<Options> {
     let selection = match args.select {
         SelectArg::Regions => Selection::Regions,
         SelectArg::Sequence => Selection::Sequence,
@@ -155,6 +157,12 @@ pub(crate) fn options(args: &WrapArgs) -> Outcome<Options> {
     };
     options.validate().map_err(|error| Failure::wrong_use(error.to_string()))?;
     Ok(options)
+}
+
+/// How much must be read of a mesh file for the points and what they carry.
+pub(crate) fn detail(args: &PlacingArgs, carried: &Carried) -> Detail {
+    let selecting = if args.only.is_empty() { Detail::Shape } else { Detail::Attributes };
+    carried.detail().max(selecting).max(weights::detail(&args.weights))
 }
 
 fn for_views(args: &ForViewsArgs) -> Option<ForViews> {

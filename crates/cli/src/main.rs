@@ -1,6 +1,7 @@
 //! The program `ldwrap-cli`: meshes in, points, pictures and reports out.
 
 mod args;
+mod batch;
 mod bound;
 mod commands;
 mod exit;
@@ -37,6 +38,7 @@ fn run(line: &CommandLine) -> Outcome {
     }
     match &line.command {
         Command::Wrap(args) => commands::wrap::run(args, line.quiet),
+        Command::Batch(args) => commands::batch::run(args, line.threads, line.quiet),
         Command::Strips(args) => commands::strips::run(args, line.quiet),
         Command::Info(args) => commands::info::run(args, line.quiet),
         Command::Shape(args) => commands::shape::run(args, line.quiet),

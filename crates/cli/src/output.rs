@@ -159,7 +159,7 @@ impl Outputs {
             Destination::File(name) => {
                 // Through a link the file that it points to is replaced, not the link.
                 let target = fs::canonicalize(name).unwrap_or_else(|_| name.clone());
-                let file = temporary(&target, &bytes).with_context(|| failed(name))?;
+                let file = temporary(folder(&target), &target, &bytes).with_context(|| failed(name))?;
                 self.renamed.push(Renamed { name: name.clone(), file, target });
             }
         }
@@ -187,7 +187,18 @@ fn failed(name: &Path) -> String {
     format!("{}: cannot be written", name.display())
 }
 
-fn temporary(target: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
+/// Writes one file whole or not at all, whatever happens: it is complete on the disk, in the folder `temporaries` of the
+/// same file system, before it gets its name.
+pub(crate) fn write_safely(temporaries: &Path, target: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let written = temporary(temporaries, target, bytes).and_then(|file| {
+        file.as_file().sync_all()?;
+        file.persist(target).map_err(|error| error.error)
+    });
+    written.map(drop).with_context(|| failed(target))
+}
+
+/// A complete temporary file in `folder`, with the permissions that `target` has or will have.
+fn temporary(folder: &Path, target: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(".ldwrap-");
     #[cfg(unix)]
@@ -196,7 +207,7 @@ fn temporary(target: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder(target))?;
+    let mut file = builder.tempfile_in(folder)?;
     file.write_all(bytes)?;
     file.flush()?;
     if let Ok(found) = fs::metadata(target) {

@@ -1,4 +1,4 @@
-//! Where the work stands: how long each stage took, and bars on stderr when a person looks.
+//! Where the work stands: how long each stage took, and bars on stderr when a person looks; of one mesh or of many.
 
 use std::io::{IsTerminal, Write, stderr};
 use std::sync::Mutex;
@@ -24,31 +24,23 @@ struct State {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seconds(Vec<(&'static str, f64)>);
 
+impl Seconds {
+    /// Each stage with its seconds.
+    pub(crate) fn stages(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        self.0.iter().copied()
+    }
+}
+
 impl Stages {
     /// Begins to listen; `quiet` shows no bar and says nothing.
     pub(crate) fn new(quiet: bool) -> Self {
-        let bar = (!quiet && stderr().is_terminal()).then(|| {
-            let bar = ProgressBar::new(0);
-            bar.set_style(style());
-            bar.enable_steady_tick(Duration::from_millis(100));
-            bar
-        });
+        let bar = bar(quiet, "{spinner} {prefix}{msg:<16} {wide_bar} {percent:>3}% {elapsed}");
         Self { state: Mutex::new(State { done: Seconds::default(), current: None }), bar, quiet }
     }
 
     /// Prints a line on stderr, above the bar; nothing if the run is quiet.
     pub(crate) fn say(&self, line: &str) {
-        if self.quiet {
-            return;
-        }
-        let print = || {
-            // A closed stderr is no reason to stop.
-            let _ = writeln!(stderr(), "{line}");
-        };
-        match &self.bar {
-            Some(bar) => bar.suspend(print),
-            None => print(),
-        }
+        say(self.quiet, self.bar.as_ref(), line);
     }
 
     /// What the bar shows before the name of the stage.
@@ -115,7 +107,63 @@ impl Serialize for Seconds {
     }
 }
 
-fn style() -> ProgressStyle {
-    ProgressStyle::with_template("{spinner} {prefix}{msg:<16} {wide_bar} {percent:>3}% {elapsed}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar())
+/// How many files are done with, and how long the rest will take; a bar on stderr when it is a terminal.
+pub(crate) struct Files {
+    bar: Option<ProgressBar>,
+    quiet: bool,
+}
+
+impl Files {
+    /// Begins to count up to `count`; `quiet` shows no bar and says nothing.
+    pub(crate) fn new(quiet: bool, count: usize) -> Self {
+        let bar = bar(quiet, "{spinner} {pos}/{len} {wide_bar} {percent:>3}% {elapsed}, {eta} left");
+        if let Some(bar) = &bar {
+            bar.set_length(count as u64);
+        }
+        Self { bar, quiet }
+    }
+
+    /// One more is done with.
+    pub(crate) fn advance(&self) {
+        if let Some(bar) = &self.bar {
+            bar.inc(1);
+        }
+    }
+
+    /// Prints a line on stderr, above the bar; nothing if the run is quiet.
+    pub(crate) fn say(&self, line: &str) {
+        say(self.quiet, self.bar.as_ref(), line);
+    }
+
+    /// The bar goes away.
+    pub(crate) fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn bar(quiet: bool, template: &str) -> Option<ProgressBar> {
+    (!quiet && stderr().is_terminal()).then(|| {
+        let bar = ProgressBar::new(0);
+        bar.set_style(
+            ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()),
+        );
+        bar.enable_steady_tick(Duration::from_millis(100));
+        bar
+    })
+}
+
+fn say(quiet: bool, bar: Option<&ProgressBar>, line: &str) {
+    if quiet {
+        return;
+    }
+    let print = || {
+        // A closed stderr is no reason to stop.
+        let _ = writeln!(stderr(), "{line}");
+    };
+    match bar {
+        Some(bar) => bar.suspend(print),
+        None => print(),
+    }
 }

@@ -82,6 +82,7 @@ impl<'a> Report<'a> {
         options: &Options,
         density: &Density,
         run: &Run,
+        irregularity: Irregularity,
         quality: Option<Quality>,
         seconds: Seconds,
     ) -> Self {
@@ -102,20 +103,15 @@ impl<'a> Report<'a> {
                 weighted: !density.is_uniform(),
             },
             mesh,
-            strips: run
-                .strips
-                .strips
-                .iter()
-                .map(|strip| strip_report(strip, options.tolerance * run.d_m))
-                .collect(),
-            open_border: open_border(area, options, run),
+            strips: run.strips.strips.iter().map(|strip| strip_report(strip, run.tolerance)).collect(),
+            open_border: open_border(area, run),
             points: PointsReport {
                 count: run.samples.len(),
                 d_m: run.d_m,
                 projected: run.correction.projected,
                 removed: run.correction.removed,
             },
-            irregularity: run.irregularity,
+            irregularity,
             equalize: run.equalize,
             quality,
             seconds,
@@ -139,8 +135,8 @@ impl<'a> MeshReport<'a> {
 }
 
 /// The length of the border that stays open at a run's d_m, both sides of each cut, over the root of the area.
-pub(crate) fn open_border(area: f64, options: &Options, run: &Run) -> f64 {
-    run.strips.open_border_length(options.tolerance * run.d_m) / area.sqrt()
+pub(crate) fn open_border(area: f64, run: &Run) -> f64 {
+    run.strips.open_border_length(run.tolerance) / area.sqrt()
 }
 
 fn strip_report(strip: &Strip, tolerance: f64) -> StripReport {

@@ -37,7 +37,7 @@
 //!
 //! // What the stages made.
 //! assert_eq!(run.strips.strips.len(), 1);
-//! assert!(run.irregularity.exact <= 1.0);
+//! assert!(run.irregularity().exact <= 1.0);
 //! for sample in &run.samples {
 //!     let distance_from_middle = mesh.locate(&sample.point).length();
 //!     assert!((0.97..=1.0 + 1e-12).contains(&distance_from_middle));

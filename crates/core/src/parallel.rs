@@ -16,6 +16,24 @@ pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync + Send) -
     }
 }
 
+/// Changes runs of `size` items (the last may be shorter); `f` hears where each starts.
+pub(crate) fn change_chunks<T: Send>(
+    items: &mut [T],
+    size: usize,
+    f: impl Fn(usize, &mut [T]) + Sync + Send,
+) {
+    debug_assert!(size > 0);
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        items.par_chunks_mut(size).enumerate().for_each(|(i, chunk)| f(i * size, chunk));
+    }
+    #[cfg(not(feature = "parallel"))]
+    for (i, chunk) in items.chunks_mut(size).enumerate() {
+        f(i * size, chunk);
+    }
+}
+
 /// `f` of the ranges of `size` that `0..count` falls into (the last may be shorter), in order. Summing the
 /// results one after the other gives the same bits with any number of threads.
 pub(crate) fn map_chunks<R: Send>(

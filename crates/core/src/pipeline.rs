@@ -115,14 +115,22 @@ pub struct Run {
     pub domain: PlanarDomain,
     /// What wrapping and the correction did.
     pub correction: Correction,
-    /// The irregularity ratios at `d_m`.
-    pub irregularity: Irregularity,
     /// What equalizing did, if it was asked for.
     pub equalize: Option<EqualizeReport>,
     /// The mean distance between neighbours, sqrt(area / number of points), in units of the mesh.
     pub d_m: f64,
+    /// Cuts whose gap is at most this were closed, in units of the mesh.
+    pub tolerance: f64,
     /// The points.
     pub samples: Vec<Sample>,
+}
+
+impl Run {
+    /// The irregularity ratios at the distance of the points (paper, 4.3). No stage needs them, so they are computed
+    /// when asked for; see [`irregularity()`](irregularity()) for the cost.
+    pub fn irregularity(&self) -> Irregularity {
+        irregularity(&self.strips, self.d_m, self.tolerance)
+    }
 }
 
 /// Options that cannot be met.
@@ -170,8 +178,8 @@ pub enum OptionsError {
     Cancelled,
 }
 
-/// Runs all stages on a mesh. `progress` hears the stages' names: `segment`, `unfold`, `wrap`, `irregularity`,
-/// `equalize`, `order`.
+/// Runs all stages on a mesh. `progress` hears the stages' names: `segment`, `unfold`, `wrap`, `equalize`,
+/// `order`.
 ///
 /// # Errors
 /// [`OptionsError`] when an option is out of range or the caller cancelled.
@@ -226,8 +234,6 @@ pub fn run_weighted(
         tolerance,
     };
     let Scattered { samples, correction, d_m } = scattering.meet(options.request)?;
-    stage("irregularity")?;
-    let irregularity = irregularity(&strips, d_m, tolerance * d_m);
     let (mut samples, equalize) = match &options.equalize {
         None => (samples, None),
         Some(options) => {
@@ -245,7 +251,8 @@ pub fn run_weighted(
     if progress.is_cancelled() {
         return Err(OptionsError::Cancelled);
     }
-    Ok(Run { segmentation, strips, domain, correction, irregularity, equalize, d_m, samples })
+    let tolerance = tolerance * d_m;
+    Ok(Run { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples })
 }
 
 /// Equalizes samples: those that moved lie in the planar domain where their new face lies.

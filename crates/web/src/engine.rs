@@ -215,9 +215,10 @@ pub(crate) fn make(
         run.correction.removed = 0;
     }
     let seconds = clock() - start;
-    let report = report::of_run(mesh, repaired, &options, &run, seconds);
+    let irregularity = run.irregularity();
+    let report = report::of_run(mesh, repaired, &options, &run, irregularity, seconds);
     let report = serde_json::to_string_pretty(&report).map_err(|e| e.to_string())?;
-    let scene = RunScene::new(mesh, &run, options.tolerance, seconds, report);
+    let scene = RunScene::new(mesh, &run, irregularity, seconds, report);
     Ok(Made { run, scene })
 }
 

@@ -1,5 +1,6 @@
 //! Counts and reports in plain numbers, with the keys of the command line program's report.
 
+use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{Options, Run};
 use ldwrap::{RepairReport, SurfaceMesh};
 use serde::{Deserialize, Serialize};
@@ -51,9 +52,10 @@ pub fn of_run(
     repaired: &RepairReport,
     options: &Options,
     run: &Run,
+    irregularity: Irregularity,
     seconds: f64,
 ) -> Value {
-    let gap = options.tolerance * run.d_m;
+    let gap = run.tolerance;
     let strips: Vec<Value> = run
         .strips
         .strips
@@ -99,7 +101,7 @@ pub fn of_run(
             "projected": run.correction.projected,
             "removed": run.correction.removed,
         },
-        "irregularity": run.irregularity,
+        "irregularity": irregularity,
         "equalize": run.equalize,
         "seconds": { "total": seconds },
     })

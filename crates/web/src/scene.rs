@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glam::{Vec2, Vec3};
+use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::Run;
 use ldwrap::unfold::{Strip, Strips};
 use ldwrap::{FaceId, Origin, RepairReport, SurfaceMesh};
@@ -157,12 +158,18 @@ pub enum Layout {
 
 impl RunScene {
     /// The picture of a run.
-    pub fn new(mesh: &SurfaceMesh, run: &Run, tolerance: f64, seconds: f64, report: String) -> Self {
+    pub fn new(
+        mesh: &SurfaceMesh,
+        run: &Run,
+        irregularity: Irregularity,
+        seconds: f64,
+        report: String,
+    ) -> Self {
         let faces = mesh.face_count();
         let mut plane = vec![Vec2::ZERO; 3 * faces];
         let mut sides = vec![Side::Joined; 3 * faces];
         let mut strip_of = vec![0; faces];
-        let gap = tolerance * run.d_m;
+        let gap = run.tolerance;
         for (number, strip) in (0..).zip(&run.strips.strips) {
             for (index, face) in strip.faces.iter().enumerate() {
                 strip_of[face.index()] = number;
@@ -195,7 +202,7 @@ impl RunScene {
             apart_extent,
             points: points.collect(),
             d_m: run.d_m,
-            irregularity: [run.irregularity.bound, run.irregularity.refined, run.irregularity.exact],
+            irregularity: [irregularity.bound, irregularity.refined, irregularity.exact],
             projected: run.correction.projected as u32,
             removed: run.correction.removed as u32,
             seconds,

@@ -136,7 +136,7 @@ pub(crate) fn write(report: &mut Report, mesh: &SurfaceMesh, object: &Object) ->
             if way == Way::Walk {
                 pictures(report, mesh, &run, &format!("{stem}-{count}"))?;
             }
-            let r = run.irregularity;
+            let r = run.irregularity();
             let open = run.strips.open_border_length(0.1 * run.d_m) / mesh.area().sqrt();
             let mut row = vec![way.name().to_owned(), count.to_string(), run.strips.strips.len().to_string()];
             row.push(format!("{open:.1}"));

@@ -1,5 +1,6 @@
 //! The command line as it is typed. What the values mean together is checked in `job`.
 
+mod batch;
 mod judge;
 mod wrap;
 
@@ -11,10 +12,11 @@ use ldwrap::io::points::PointFormat;
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::shapes::Shape;
 
+pub(crate) use batch::{BatchArgs, BatchOutputArgs, Shard};
 pub(crate) use judge::{BoundArgs, CompareArgs, MeasureArgs, PlanarSet, PlaneArgs, PointsOf};
 pub(crate) use wrap::{
-    AttributeArg, ForViewsArgs, OnlyArg, OrderArg, SelectArg, WeightsArgs, WeightsBy, WeightsOf, WrapArgs,
-    WrapOutputArgs,
+    AttributeArg, ForViewsArgs, OnlyArg, OrderArg, PlacingArgs, SelectArg, WeightsArgs, WeightsBy, WeightsOf,
+    WrapArgs, WrapOutputArgs,
 };
 
 /// Spreads low-discrepancy points over polygon meshes.
@@ -39,6 +41,8 @@ pub(crate) struct CommandLine {
 pub(crate) enum Command {
     /// Spread points over a mesh
     Wrap(Box<WrapArgs>),
+    /// Spread points over many meshes: folders, patterns, lists
+    Batch(Box<BatchArgs>),
     /// Draw how a mesh is segmented and unfolded, without points
     Strips(StripsArgs),
     /// Tell what a mesh is: counts, area, components, borders, what was repaired
@@ -75,6 +79,13 @@ pub(crate) struct MeshArgs {
     /// The mesh: a PLY, OBJ, STL, glTF, GLB or OFF file, also compressed with gzip, or `-` for stdin
     #[arg(value_name = "MESH")]
     pub(crate) mesh: PathBuf,
+    #[command(flatten)]
+    pub(crate) reading: ReadingArgs,
+}
+
+/// How a mesh is read.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub(crate) struct ReadingArgs {
     /// The format of the mesh [default: told by its content, then by its name]
     #[arg(long, value_enum, value_name = "FORMAT")]
     pub(crate) mesh_format: Option<MeshFormatArg>,

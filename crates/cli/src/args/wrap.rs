@@ -14,6 +14,15 @@ pub(crate) struct WrapArgs {
     #[command(flatten)]
     pub(crate) mesh: MeshArgs,
     #[command(flatten)]
+    pub(crate) placing: PlacingArgs,
+    #[command(flatten)]
+    pub(crate) outputs: WrapOutputArgs,
+}
+
+/// Everything that decides where on a mesh the points lie, and their order.
+#[derive(Debug, Args)]
+pub(crate) struct PlacingArgs {
+    #[command(flatten)]
     pub(crate) request: RequestArgs,
     #[command(flatten)]
     pub(crate) sequence: SequenceArgs,
@@ -35,8 +44,6 @@ pub(crate) struct WrapArgs {
     pub(crate) only: Vec<OnlyArg>,
     #[command(flatten)]
     pub(crate) weights: WeightsArgs,
-    #[command(flatten)]
-    pub(crate) outputs: WrapOutputArgs,
 }
 
 /// Three finite numbers, not all 0.
@@ -176,11 +183,8 @@ pub(crate) struct WrapOutputArgs {
     /// The format of the points [default: by the name's extension]
     #[arg(long, value_name = "FORMAT", requires = "output", value_parser = point_formats())]
     pub(crate) format: Option<PointFormat>,
-    /// What the points carry besides their position: flat-normal, smooth-normal, uv, color, vertex-color, material,
-    /// part, face, polygon, barycentric, strip, place, origin, cell-area, property:NAME of a PLY file; or all that
-    /// mesh and format have [default: flat-normal, face, barycentric, strip, place, origin, where the format has room]
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',', requires = "output")]
-    pub(crate) attributes: Vec<AttributeArg>,
+    #[command(flatten)]
+    pub(crate) attributes: AttributesArgs,
     /// Draw the strips in the plane with their points, as SVG
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) strips: Option<PathBuf>,
@@ -193,6 +197,17 @@ pub(crate) struct WrapOutputArgs {
     /// Measure the points too, as `measure` does, and add that to the report
     #[arg(long, requires = "report")]
     pub(crate) quality: bool,
+}
+
+/// What points carry.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Outputs")]
+pub(crate) struct AttributesArgs {
+    /// What the points carry besides their position: flat-normal, smooth-normal, uv, color, vertex-color, material,
+    /// part, face, polygon, barycentric, strip, place, origin, cell-area, property:NAME of a PLY file; or all that
+    /// mesh and format have [default: flat-normal, face, barycentric, strip, place, origin, where the format has room]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', requires = "output")]
+    pub(crate) attributes: Vec<AttributeArg>,
 }
 
 /// An attribute, or all of them.

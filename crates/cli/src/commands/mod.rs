@@ -1,5 +1,6 @@
 //! One file a command: from its arguments to its outputs.
 
+pub(crate) mod batch;
 pub(crate) mod bound;
 pub(crate) mod compare;
 pub(crate) mod help;

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Context, anyhow};
 
-use crate::args::{MeshArgs, ViewArgs};
+use crate::args::{MeshArgs, ReadingArgs, ViewArgs};
 use crate::exit::{Failure, Outcome};
 use crate::input;
 use crate::progress::Stages;
@@ -19,7 +19,7 @@ pub(crate) fn run(args: &ViewArgs, quiet: bool) -> Outcome {
     }
     // A mesh that cannot be used is told here, as every command does, and not by a window.
     let stages = Stages::new(quiet);
-    let mesh = MeshArgs { mesh: args.mesh.clone(), mesh_format: None, keep_winding: false, max_memory: None };
+    let mesh = MeshArgs { mesh: args.mesh.clone(), reading: ReadingArgs::default() };
     input::read(&mesh, &stages)?;
     stages.finish();
     let viewer = find()?;

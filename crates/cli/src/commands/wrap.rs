@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use anyhow::Context;
 use ldwrap::correct::Correction;
 use ldwrap::density::Density;
-use ldwrap::io::Detail;
 use ldwrap::irregularity::Irregularity;
 use ldwrap::pipeline::{self, Options, Run};
 use ldwrap::{Progress, SurfacePoint};
@@ -14,7 +13,7 @@ use crate::args::WrapArgs;
 use crate::commands::counted;
 use crate::exit::Outcome;
 use crate::input::{self, Input};
-use crate::job::{self, WrapOutputs};
+use crate::job::{self, Carried, WrapOutputs};
 use crate::output::Outputs;
 use crate::picture::{PreviewOptions, preview_png, strips_svg};
 use crate::points;
@@ -25,23 +24,24 @@ use crate::weights;
 
 /// Runs the command.
 pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
-    let options = job::options(args)?;
-    let outputs = WrapOutputs::new(&args.outputs, &args.mesh.mesh)?;
+    let WrapArgs { mesh, placing, outputs } = args;
+    let options = job::options(placing)?;
+    let outputs = WrapOutputs::new(outputs, &mesh.mesh)?;
     let stages = Stages::new(quiet);
-    let carried = outputs.points.as_ref().map(|points| points.carried.detail()).unwrap_or_default();
-    let selecting = if args.only.is_empty() { Detail::Shape } else { Detail::Attributes };
-    let detail = carried.max(selecting).max(weights::detail(&args.weights));
-    let input = input::read_detail(&args.mesh, detail, &args.only, &stages)?;
+    let carried = outputs.points.as_ref().map_or(&Carried::Usual, |points| &points.carried);
+    let input = input::read_detail(mesh, job::detail(placing, carried), &placing.only, &stages)?;
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    job::points_fit(&options, input.mesh.area(), args.mesh.max_memory)?;
-    let density = weights::density(&args.weights, &input)?;
+    job::points_fit(&options, input.mesh.area(), args.mesh.reading.max_memory)?;
+    let density = weights::density(&placing.weights, &input)?;
     let run = pipeline::run_weighted(&input.mesh, &density, &options, &stages)
         .with_context(|| input.name.clone())?;
-    let job = Job { input: &input, density: &density, options: &options };
-    let files = write(job, &run, &outputs, &stages)?;
-    for line in summary(&input, &options, &run) {
+    stages.begin("irregularity", 0);
+    let irregularity = run.irregularity();
+    let job = Job { input: &input, density: &density, options: &options, run: &run, irregularity };
+    let files = write(job, &outputs, &stages)?;
+    for line in summary(job) {
         stages.say(&line);
     }
     for file in files {
@@ -56,17 +56,19 @@ struct Job<'a> {
     input: &'a Input,
     density: &'a Density,
     options: &'a Options,
+    run: &'a Run,
+    irregularity: Irregularity,
 }
 
-fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
-    let Job { input, density, options } = job;
+fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
+    let Job { input, density, options, run, irregularity } = job;
     let Input { mesh, repaired, .. } = input;
     let mut outputs = Outputs::default();
     if wanted.strips.is_some() || wanted.preview.is_some() {
         stages.begin("draw", 0);
     }
     if let Some(destination) = &wanted.strips {
-        let svg = strips_svg(&run.strips, &run.domain, &run.samples, options.tolerance * run.d_m);
+        let svg = strips_svg(&run.strips, &run.domain, &run.samples, run.tolerance);
         outputs.stage(destination, svg.into_bytes())?;
     }
     if let Some(destination) = &wanted.preview {
@@ -83,15 +85,23 @@ fn write(job: Job<'_>, run: &Run, wanted: &WrapOutputs, stages: &Stages) -> anyh
     });
     let seconds = stages.finish();
     if let Some(destination) = &wanted.report {
-        let report = Report::new(MeshReport::new(mesh, repaired), options, density, run, quality, seconds);
+        let report = Report::new(
+            MeshReport::new(mesh, repaired),
+            options,
+            density,
+            run,
+            irregularity,
+            quality,
+            seconds,
+        );
         outputs.stage(destination, report::json(&report)?)?;
     }
     outputs.commit()
 }
 
-fn summary(input: &Input, options: &Options, run: &Run) -> Vec<String> {
-    let Input { name, mesh, .. } = input;
-    let Irregularity { bound, refined, exact } = run.irregularity;
+fn summary(job: Job<'_>) -> Vec<String> {
+    let Job { input: Input { name, mesh, .. }, run, irregularity, options: _, density: _ } = job;
+    let Irregularity { bound, refined, exact } = irregularity;
     let Correction { projected, removed } = run.correction;
     let count = run.samples.len();
     let mut lines = vec![
@@ -103,7 +113,7 @@ fn summary(input: &Input, options: &Options, run: &Run) -> Vec<String> {
             run.d_m
         ),
         format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact"),
-        format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), options, run)),
+        format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), run)),
         format!("corrected: {projected} projected, {removed} removed"),
     ];
     if let Some(equalize) = &run.equalize {

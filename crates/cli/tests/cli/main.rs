@@ -2,6 +2,7 @@
 
 mod attributes;
 mod bad_input;
+mod batch;
 mod common;
 mod compare;
 mod measure;

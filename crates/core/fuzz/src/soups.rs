@@ -168,7 +168,7 @@ pub fn pipeline(case: &Case) {
         assert!(place.is_finite() && place.cmpge(low - rounding).all() && place.cmple(high + rounding).all());
         assert!(sample.place.is_finite());
     }
-    let irregularity = run.irregularity;
+    let irregularity = run.irregularity();
     assert!(irregularity.exact >= 0.0 && irregularity.bound.is_finite(), "{irregularity:?}");
     check_segmentation("case", &mesh, &run.segmentation);
     // The invariants of lengths hold to the rounding of coordinates.

@@ -5,8 +5,9 @@
 
 use glam::DVec3;
 
-use super::diagram::{Border, Diagram};
 use super::near::Site;
+use super::owners::{Border, Diagram};
+use crate::parallel;
 
 /// Changes of the weights that bring the cells' masses to `wanted`, to first order, when the sites move by `moves` at
 /// the same time.
@@ -99,57 +100,76 @@ impl Laplacian {
         Self { ends, entries, diagonal }
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64]) {
-        let mut start = 0;
-        for row in 0..x.len() {
-            let end = self.ends[row] as usize;
-            let mut sum = self.diagonal[row] * x[row];
-            for &(column, flow) in &self.entries[start..end] {
-                sum -= flow * x[column as usize];
-            }
-            y[row] = sum;
-            start = end;
-        }
+    /// The entries of a row beside its diagonal.
+    fn row(&self, row: usize) -> &[(u32, f64)] {
+        let start = if row == 0 { 0 } else { self.ends[row - 1] as usize };
+        &self.entries[start..self.ends[row] as usize]
     }
 
     /// Conjugate gradients, preconditioned by the diagonal. Rows without neighbours stay at zero.
     fn solve(&self, right: &[f64]) -> Vec<f64> {
         const MOST_ITERATIONS: usize = 60;
         const ACCURACY: f64 = 1e-2;
-        let inverse: Vec<f64> =
-            self.diagonal.iter().map(|d| if *d > 0.0 { d.recip() } else { 0.0 }).collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
-        let count = right.len();
-        let mut x = vec![0.0; count];
-        let mut r: Vec<f64> =
-            right.iter().zip(&inverse).map(|(b, i)| if *i > 0.0 { *b } else { 0.0 }).collect();
-        let mut z: Vec<f64> = r.iter().zip(&inverse).map(|(r, i)| r * i).collect();
-        let mut p = z.clone();
-        let mut q = vec![0.0; count];
-        let mut rz = dot(&r, &z);
-        let goal = rz * ACCURACY * ACCURACY;
+        let inverse = |row: usize| if self.diagonal[row] > 0.0 { self.diagonal[row].recip() } else { 0.0 };
+        let mut state: Vec<Unknown> = (0..right.len())
+            .map(|row| {
+                let residual = if self.diagonal[row] > 0.0 { right[row] } else { 0.0 };
+                Unknown { value: 0.0, residual, image: 0.0 }
+            })
+            .collect();
+        let mut direction: Vec<f64> =
+            state.iter().enumerate().map(|(row, s)| s.residual * inverse(row)).collect();
+        let mut size: f64 = state.iter().zip(&direction).map(|(s, d)| s.residual * d).sum();
+        let goal = size * ACCURACY * ACCURACY;
         for _ in 0..MOST_ITERATIONS {
-            if rz <= goal {
+            if size <= goal {
                 break;
             }
-            self.apply(&p, &mut q);
-            let pq = dot(&p, &q);
-            if pq <= 0.0 {
+            let curvature = update(&mut state, |row, unknown| {
+                let beside = self.row(row).iter().map(|&(column, flow)| flow * direction[column as usize]);
+                unknown.image = self.diagonal[row] * direction[row] - beside.sum::<f64>();
+                unknown.image * direction[row]
+            });
+            if curvature <= 0.0 {
                 break;
             }
-            let alpha = rz / pq;
-            for i in 0..count {
-                x[i] += alpha * p[i];
-                r[i] -= alpha * q[i];
-                z[i] = r[i] * inverse[i];
-            }
-            let next = dot(&r, &z);
-            let beta = next / rz;
-            rz = next;
-            for i in 0..count {
-                p[i] = z[i] + beta * p[i];
-            }
+            let step = size / curvature;
+            let next = update(&mut state, |row, unknown| {
+                unknown.value += step * direction[row];
+                unknown.residual -= step * unknown.image;
+                unknown.residual * unknown.residual * inverse(row)
+            });
+            let turn = next / size;
+            size = next;
+            parallel::change_chunks(&mut direction, CHUNK, |first, chunk| {
+                for ((row, direction), unknown) in (first..).zip(chunk).zip(&state[first..]) {
+                    *direction = unknown.residual * inverse(row) + turn * *direction;
+                }
+            });
         }
-        x
+        state.into_iter().map(|unknown| unknown.value).collect()
     }
+}
+
+/// What conjugate gradients know of a row.
+#[derive(Clone, Copy)]
+struct Unknown {
+    value: f64,
+    residual: f64,
+    /// The matrix times the direction.
+    image: f64,
+}
+
+/// How many rows are worked on together.
+const CHUNK: usize = 1 << 13;
+
+/// Changes every row and adds up what that gives, chunk by chunk.
+fn update(state: &mut [Unknown], change: impl Fn(usize, &mut Unknown) -> f64 + Sync + Send) -> f64 {
+    let mut sums: Vec<(&mut [Unknown], f64)> = state.chunks_mut(CHUNK).map(|chunk| (chunk, 0.0)).collect();
+    parallel::change_chunks(&mut sums, 1, |number, chunks| {
+        for (chunk, sum) in chunks {
+            *sum = (number * CHUNK..).zip(chunk.iter_mut()).map(|(row, unknown)| change(row, unknown)).sum();
+        }
+    });
+    sums.iter().map(|(_, sum)| sum).sum()
 }

@@ -55,6 +55,57 @@ pub(super) fn cell<T>(
     true
 }
 
+/// How a line cuts a tile in two.
+pub(super) struct Halves {
+    /// The first site's share of the tile.
+    pub(super) share: f64,
+    /// That times the mean barycentric coordinates.
+    pub(super) weights: [f64; 3],
+    /// As [`border_length`].
+    pub(super) length: f64,
+}
+
+impl Halves {
+    /// The weights of the second site.
+    pub(super) fn rest(&self) -> [f64; 3] {
+        self.weights.map(|weight| 1.0 / 3.0 - weight)
+    }
+}
+
+/// What two sites own of a tile that no other site owns a part of.
+pub(super) fn halves(own: &Powers, theirs: &Powers) -> Halves {
+    let lead = [theirs[0] - own[0], theirs[1] - own[1], theirs[2] - own[2]];
+    let ahead = lead.map(|l| l >= 0.0);
+    // The corner on one side of the line by itself.
+    let Some(c) = (0..3).find(|&c| ahead[c] != ahead[(c + 1) % 3] && ahead[c] != ahead[(c + 2) % 3]) else {
+        let share = if ahead[0] { 1.0 } else { 0.0 };
+        return Halves { share, weights: [share / 3.0; 3], length: 0.0 };
+    };
+    let (b, a) = ((c + 1) % 3, (c + 2) % 3);
+    // How far along its two sides the line lies.
+    let (along_b, along_a) = (lead[c] / (lead[c] - lead[b]), lead[c] / (lead[c] - lead[a]));
+    let share = along_b * along_a;
+    let mut weights = [0.0; 3];
+    weights[c] = share * (1.0 - (along_b + along_a) / 3.0);
+    weights[b] = share * along_b / 3.0;
+    weights[a] = share * along_a / 3.0;
+    let length = (along_b / (lead[c] - lead[a])).abs();
+    if ahead[c] {
+        Halves { share, weights, length }
+    } else {
+        Halves { share: 1.0 - share, weights: weights.map(|weight| 1.0 / 3.0 - weight), length }
+    }
+}
+
+/// The length of the border between two corners over the slope of the difference of the powers across it, over twice
+/// the area of the tile: along the line where `lead` does not change, (du, dv) is this many times its slope, turned.
+pub(super) fn border_length(own: &Powers, theirs: &Powers, from: &Corner, to: &Corner) -> f64 {
+    let lead = [0, 1, 2].map(|c| theirs[c] - own[c]);
+    let (by_u, by_v) = (lead[1] - lead[0], lead[2] - lead[0]);
+    let length = if by_v.abs() > by_u.abs() { (to.u - from.u) / by_v } else { (to.v - from.v) / by_u };
+    if length.is_finite() { length.abs() } else { 0.0 }
+}
+
 /// Keeps the part of a convex polygon where the affine function is not negative.
 fn clip(polygon: &[Corner], at: impl Fn(&Corner) -> f64, behind: usize, clipped: &mut Vec<Corner>) {
     clipped.clear();

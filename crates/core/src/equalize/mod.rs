@@ -10,6 +10,7 @@ mod diagram;
 mod layout;
 mod near;
 mod normals;
+mod owners;
 mod patches;
 mod places;
 mod relax;
@@ -30,9 +31,9 @@ use crate::parallel;
 use crate::progress::Progress;
 use crate::sample::SurfacePoint;
 use balance::Item;
-use diagram::{diagram, owned_tiles};
 use layout::{Due, Layout, Place, lay_out};
 use near::{Near, Site};
+use owners::{Cell, diagram, nearest};
 use patches::Patches;
 use places::Spot;
 use relax::{Relaxed, relax};
@@ -44,7 +45,7 @@ pub use views::{Cameras, ForViews};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EqualizeOptions {
-    /// Rounds of relaxation. More come closer to equal cells; the time is proportional. Default: 6.
+    /// Rounds of relaxation. More come closer to equal cells; the time is proportional. Default: 5.
     pub rounds: u32,
     /// What a difference of normals counts for: the length of a unit of normal, in d_m. Keeps the two sides of sheets
     /// thinner than about twice this apart; more costs evenness. Default: 0.4.
@@ -55,7 +56,7 @@ pub struct EqualizeOptions {
 
 impl Default for EqualizeOptions {
     fn default() -> Self {
-        Self { rounds: 6, bend: 0.4, for_views: None }
+        Self { rounds: 5, bend: 0.4, for_views: None }
     }
 }
 
@@ -109,7 +110,7 @@ pub fn equalize(
     let places: Vec<DVec3> = parallel::map(n, |i| mesh.locate(&points[i]) - scale.middle);
     let tiles = tiles(mesh, &patches.of_face, &scale);
     let items = items(mesh, &patches, points, &places, options.bend * d_m);
-    let (layout, dues) = lay_out(tiles, &patches.counts, items);
+    let (layout, dues) = lay_out(&tiles, &patches.counts, items);
     let sites = |at: &dyn Fn(&Due) -> DVec3| -> Vec<Site> {
         let site = |due: &Due| {
             let block = &layout.blocks[due.block as usize];
@@ -133,7 +134,8 @@ pub fn equalize(
     }
     let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
-    let relaxed = relax(&layout, start, &wanted, options.rounds, progress);
+    let homes: Vec<Place> = dues.iter().map(|due| layout.blocks[due.block as usize].centre).collect();
+    let relaxed = relax(&layout, start, &homes, &wanted, options.rounds, progress);
     let mut settled = settle(&layout, &relaxed);
     spacing::make_way(&layout, &relaxed, &mut settled);
     if let Some(options) = &options.for_views {
@@ -187,23 +189,9 @@ fn items(
 
 /// The place of each cell's tiles that lies nearest to its centroid; `None` for an empty cell.
 fn settle(layout: &Layout, relaxed: &Relaxed) -> Vec<Option<Spot>> {
-    let mut best: Vec<Option<(f64, Spot)>> = vec![None; relaxed.sites.len()];
-    for (site, tile) in owned_tiles(layout, &relaxed.near, &relaxed.sites) {
-        let cell = &relaxed.diagram.cells[site as usize];
-        if cell.mass <= 0.0 {
-            continue;
-        }
-        let centroid = cell.moment.position / cell.mass;
-        let tile = &layout.tiles[tile as usize];
-        let [a, b, c] = tile.corners;
-        let place = triangle::at(a, b, c, triangle::nearest(a, b, c, centroid));
-        let distance = place.distance_squared(centroid);
-        let best = &mut best[site as usize];
-        if best.is_none_or(|b| distance < b.0) {
-            *best = Some((distance, Spot { face: tile.face, place }));
-        }
-    }
-    best.into_iter().map(|best| best.map(|(_, spot)| spot)).collect()
+    let centroid = |cell: &Cell| (cell.mass > 0.0).then(|| cell.moment.position / cell.mass);
+    let centroids: Vec<_> = relaxed.diagram.cells.iter().map(centroid).collect();
+    nearest(layout, &relaxed.near, &relaxed.sites, &centroids)
 }
 
 /// Standard deviation over mean.

@@ -47,7 +47,7 @@ impl Near {
             let mut found = Vec::new();
             for block in &layout.blocks[range] {
                 let before = found.len();
-                let Bounds { middle, half, .. } = block.bounds;
+                let Bounds { middle, half } = block.bounds;
                 let mut reach = half.position.length() + (REACH + SLACK) * block.distance;
                 // Every patch with blocks has a site, so this ends.
                 while found.len() == before {

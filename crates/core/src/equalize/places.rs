@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::diagram::{Piece, pieces};
 use super::layout::Layout;
+use super::owners::{Piece, pieces};
 use super::relax::Relaxed;
 use crate::ids::FaceId;
 use crate::parallel;
@@ -42,7 +42,7 @@ pub(super) fn spots(
             while next < passed {
                 next += step;
                 let tile = &layout.tiles[piece.tile as usize];
-                spots.push(Spot { face: tile.face, place: inside(tile.corners, piece, &mut random) });
+                spots.push(Spot { face: tile.face, place: inside(layout.corners(tile), piece, &mut random) });
             }
         }
         spots

@@ -6,13 +6,13 @@
 use glam::DVec3;
 
 use super::capacity::weight_steps;
-use super::diagram::{Cell, Diagram, diagram};
-use super::layout::Layout;
-use super::near::{Near, SLACK, Site};
+use super::layout::{Layout, Place};
+use super::near::{Near, Runs, SLACK, Site};
+use super::owners::{Cell, Diagram, diagram};
 use crate::progress::Progress;
 
 /// How far a point is moved beyond its cell's centroid; speeds up the approach to equal, round cells.
-const OVERSHOOT: f64 = 1.5;
+const OVERSHOOT: f64 = 1.7;
 
 /// The largest change of a weight in one round, in squared distances of the points; keeps cells from vanishing.
 const MOST_STEP: f64 = 1.0;
@@ -20,8 +20,12 @@ const MOST_STEP: f64 = 1.0;
 /// At most this many rounds at the end in which only weights change.
 const SETTLING: u32 = 8;
 
-/// Weights are settled when no cell's mass is off by more than this share.
-const CLOSE: f64 = 1e-3;
+/// Weights are settled when the cells' masses spread by at most this share of the mean, and none is off by more than
+/// [`CLOSEST`].
+const CLOSE: f64 = 1e-4;
+
+/// See [`CLOSE`].
+const CLOSEST: f64 = 0.02;
 
 /// The points after relaxation, with their cells.
 pub(super) struct Relaxed {
@@ -30,10 +34,11 @@ pub(super) struct Relaxed {
     pub(super) near: Near,
 }
 
-/// Moves the sites for a number of rounds; `wanted` is the mass for each of them.
+/// Moves the sites for a number of rounds; `wanted` is the mass for each of them, `homes` says where they are due.
 pub(super) fn relax(
     layout: &Layout,
     mut sites: Vec<Site>,
+    homes: &[Place],
     wanted: &[f64],
     rounds: u32,
     progress: &dyn Progress,
@@ -48,7 +53,7 @@ pub(super) fn relax(
             drift = 0.0;
         }
         let diagram = diagram(layout, &near, &sites);
-        let settled = round >= rounds && worst_error(&diagram, wanted) < CLOSE;
+        let settled = round >= rounds && close(&diagram, wanted);
         if settled || round == rounds + SETTLING || progress.is_cancelled() {
             return Relaxed { sites, diagram, near };
         }
@@ -72,7 +77,7 @@ pub(super) fn relax(
             farthest = farthest.max(by.length() / site.distance);
         }
         drift += farthest;
-        if round < rounds && rescue(&mut sites, &diagram, wanted) {
+        if regain(&mut sites, homes, &diagram, wanted, round < rounds) {
             drift = f64::INFINITY;
         }
         round += 1;
@@ -80,8 +85,10 @@ pub(super) fn relax(
     }
 }
 
-fn worst_error(diagram: &Diagram, wanted: &[f64]) -> f64 {
-    diagram.cells.iter().zip(wanted).fold(0.0_f64, |m, (c, w)| m.max((c.mass / w - 1.0).abs()))
+fn close(diagram: &Diagram, wanted: &[f64]) -> bool {
+    let errors = diagram.cells.iter().zip(wanted).map(|(c, w)| (c.mass / w - 1.0).abs());
+    let (squares, worst) = errors.fold((0.0, 0.0_f64), |(s, m), e| (s + e * e, m.max(e)));
+    squares <= CLOSE * CLOSE * wanted.len() as f64 && worst <= CLOSEST
 }
 
 fn to_centroid(site: &Site, cell: &Cell) -> DVec3 {
@@ -91,33 +98,67 @@ fn to_centroid(site: &Site, cell: &Cell) -> DVec3 {
 /// A cell with less than this share of its wanted mass is lost: its slope says nothing about how to regain it.
 const LOST: f64 = 0.1;
 
+/// With less than this share it hardly has borders through which weights could give it more.
+const GONE: f64 = 0.01;
+
 /// A cell with more than this share of its wanted mass can take in the site of a lost one.
 const HEAVY: f64 = 1.1;
 
-/// Puts the sites of lost cells into heavy cells nearby, which they then halve. What a lost cell should have had its
-/// neighbours hold, so going farther would take points from where they are due. Whether there was any to put.
-fn rescue(sites: &mut [Site], diagram: &Diagram, wanted: &[f64]) -> bool {
+/// Above the weight with which it just owns its own place the site of a cell that is gone gets this share of the squared
+/// distance of the points.
+const FOOTHOLD: f64 = 0.3;
+
+/// What is farther away than this many distances of the points has nothing to do with a cell.
+const SIGHT: f64 = 3.0;
+
+/// Gives lost cells a part of the surface again. If sites `may_move`, a lost one goes into a heavy cell in sight, which
+/// the two then halve: what it should have had its neighbours hold, and from farther away mass would have to pass
+/// through many cells. Others go back to where they are due, with the weight for a foothold. Whether any site moved.
+fn regain(sites: &mut [Site], homes: &[Place], diagram: &Diagram, wanted: &[f64], may_move: bool) -> bool {
     let share = |i: usize| diagram.cells[i].mass / wanted[i];
     let lost: Vec<usize> = (0..sites.len()).filter(|&i| share(i) < LOST).collect();
     if lost.is_empty() {
         return false;
     }
-    let mut heavy: Vec<usize> = (0..sites.len()).filter(|&i| share(i) > HEAVY).collect();
+    let places: Vec<DVec3> = sites.iter().map(|site| site.place.position).collect();
+    let runs = Runs::new(&places);
+    let mut halved = vec![false; sites.len()];
+    let mut near = Vec::new();
+    let mut moved = false;
     for i in lost {
-        let from = sites[i];
-        let nearest = (0..heavy.len()).filter(|&h| sites[heavy[h]].patch == from.patch).min_by(|&a, &b| {
-            let distance = |h: usize| sites[heavy[h]].place.position.distance_squared(from.place.position);
-            distance(a).total_cmp(&distance(b))
+        let own = sites[i];
+        near.clear();
+        runs.within(places[i], SIGHT * own.distance, |j| sites[j].patch == own.patch, &mut near);
+        let heavy = near.iter().map(|&j| j as usize).filter(|&j| share(j) > HEAVY && !halved[j]);
+        let nearest = heavy.min_by(|&a, &b| {
+            places[a].distance_squared(places[i]).total_cmp(&places[b].distance_squared(places[i]))
         });
-        let Some(nearest) = nearest else { continue };
-        let heavy = heavy.swap_remove(nearest);
-        let cell = &diagram.cells[heavy];
-        let (centroid, normal) = (cell.moment.position / cell.mass, cell.moment.normal / cell.mass);
-        let aside = normal.try_normalize().unwrap_or(DVec3::Z).any_orthonormal_vector();
-        let aside = aside * (0.3 * sites[heavy].distance);
-        sites[i] = sites[heavy];
-        sites[i].place.position = centroid + aside;
-        sites[heavy].place.position = centroid - aside;
+        if let Some(heavy) = nearest.filter(|_| may_move) {
+            halve(sites, i, heavy, &diagram.cells[heavy]);
+            halved[heavy] = true;
+            moved = true;
+        } else if share(i) < GONE {
+            let own = Site { place: if may_move { homes[i] } else { own.place }, ..own };
+            moved |= may_move;
+            near.clear();
+            runs.within(own.place.position, SIGHT * own.distance, |j| sites[j].patch == own.patch, &mut near);
+            let lead = |&j: &u32| {
+                let other = &sites[j as usize];
+                other.weight - other.place.minus(&own.place).length_squared()
+            };
+            let least = near.iter().map(lead).fold(own.weight, f64::max);
+            sites[i] = Site { weight: least + FOOTHOLD * own.distance * own.distance, ..own };
+        }
     }
-    true
+    moved
+}
+
+/// Puts a lost site into a heavy one's cell, on two sides of the centroid.
+fn halve(sites: &mut [Site], lost: usize, heavy: usize, cell: &Cell) {
+    let (centroid, normal) = (cell.moment.position / cell.mass, cell.moment.normal / cell.mass);
+    let aside = normal.try_normalize().unwrap_or(DVec3::Z).any_orthonormal_vector();
+    let aside = aside * (0.3 * sites[heavy].distance);
+    sites[lost] = sites[heavy];
+    sites[lost].place.position = centroid + aside;
+    sites[heavy].place.position = centroid - aside;
 }

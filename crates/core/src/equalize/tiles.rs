@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::layout::Place;
 use super::normals::CornerNormals;
 use crate::density::Density;
 use crate::geometry::triangle;
@@ -12,10 +13,8 @@ use crate::parallel;
 /// A piece of a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tile {
-    /// Relative to the middle of the mesh, so that squares of places lose no digits.
-    pub(super) corners: [DVec3; 3],
-    /// The scaled normals at the corners.
-    pub(super) normals: [DVec3; 3],
+    /// Which places are its corners.
+    pub(super) corners: [u32; 3],
     pub(super) face: FaceId,
     /// The patch that it belongs to.
     pub(super) patch: u32,
@@ -24,19 +23,10 @@ pub(super) struct Tile {
     pub(super) area: f64,
 }
 
-impl Tile {
-    pub(super) fn centre(&self) -> DVec3 {
-        (self.corners[0] + self.corners[1] + self.corners[2]) / 3.0
-    }
-
-    /// The mean scaled normal.
-    pub(super) fn normal(&self) -> DVec3 {
-        (self.normals[0] + self.normals[1] + self.normals[2]) / 3.0
-    }
-}
-
 /// Tiles in clumps.
 pub(super) struct Tiles {
+    /// The corners of the tiles, relative to the middle of the mesh, so that squares of places lose no digits.
+    pub(super) places: Vec<Place>,
     pub(super) tiles: Vec<Tile>,
     /// Where each clump ends; ascending.
     pub(super) clump_ends: Vec<u32>,
@@ -54,10 +44,10 @@ pub(super) struct Scale<'a> {
 }
 
 /// No side of a tile is longer than this many distances of the points there, but for needles: see [`MOST`].
-const LONGEST: f64 = 0.7;
+const LONGEST: f64 = 1.0;
 
 /// A face is cut into about this many tiles at most, and as many more for each point that is due on it: a needle 1e12 times
-/// as long as wide would make millions. No face shorter than 22 distances of the points comes near it.
+/// as long as wide would make millions. No face shorter than 32 distances of the points comes near it.
 const MOST: f64 = 64.0;
 
 /// Where few points are due, tiles and normals are scaled as if this share of the mean density were.
@@ -66,14 +56,36 @@ const SPARSEST: f64 = 0.1;
 /// Clumps lie in cubes with sides of so many distances of the points, or down to half of that.
 const CLUMP: f64 = 0.25;
 
+/// What orders a tile: its patch, the size of its cube and the cube.
+type Key = (u32, u32, u64);
+
+/// The tiles of some faces.
+#[derive(Default)]
+struct Cut {
+    /// Corners that the faces do not share with others.
+    places: Vec<Place>,
+    tiles: Vec<(Key, Tile)>,
+}
+
 /// Cuts the faces whose patch is given into tiles; faces without mass have none. Clumps of tiles that lie close
 /// together stand together, patch by patch.
 pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &Scale) -> Tiles {
     const CHUNK: usize = 1 << 12;
     let normals = CornerNormals::new(mesh, patch_of_face);
+    // Normals are scaled by the distance of the points, so faces share corners only where that is the same.
+    let mut places: Vec<Place> = if scale.density.is_uniform() {
+        parallel::map(normals.count(), |id| Place {
+            position: mesh.positions()[normals.vertex(id)] - scale.middle,
+            normal: normals.at(id) * (scale.bend * scale.d_m),
+        })
+    } else {
+        Vec::new()
+    };
+    let shared = places.len() as u32;
     let (low, _) = mesh.bounds();
+    let from_low = scale.middle - low;
     let pieces = parallel::map_chunks(mesh.face_count(), CHUNK, |range| {
-        let mut tiles = Vec::with_capacity(range.len());
+        let mut cut = Cut { places: Vec::new(), tiles: Vec::with_capacity(range.len()) };
         for index in range {
             let face = FaceId::new(index);
             let Some(patch) = patch_of_face[index] else { continue };
@@ -83,46 +95,62 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
                 continue;
             }
             let distance = scale.d_m / libm::sqrt(mean.max(SPARSEST));
-            let places = mesh.triangle(face).map(|p| p - scale.middle);
-            let normals = normals.of(face).map(|n| n * (scale.bend * distance));
-            let whole =
-                std::array::from_fn(|c| Corner { place: places[c], normal: normals[c], density: density[c] });
-            split(whole, longest_side(places, distance), &mut |corners: [Corner; 3]| {
-                let places = corners.map(|c| c.place);
-                let area = triangle::area(places[0], places[1], places[2]);
-                let mass = area * (corners[0].density + corners[1].density + corners[2].density) / 3.0;
-                if mass > 0.0 {
-                    let normals = corners.map(|c| c.normal);
-                    tiles.push(Tile { corners: places, normals, face, patch, mass, area });
-                }
-            });
+            let ids = normals.ids(face);
+            let whole: [Corner; 3] = if shared > 0 {
+                [0, 1, 2].map(|c| Corner { id: ids[c], place: places[ids[c] as usize], density: density[c] })
+            } else {
+                let corners = mesh.triangle(face);
+                [0, 1, 2].map(|c| {
+                    let position = corners[c] - scale.middle;
+                    let normal = normals.at(ids[c] as usize) * (scale.bend * distance);
+                    cut.corner(shared, Place { position, normal }, density[c])
+                })
+            };
+            cut.split(
+                whole,
+                longest_side(whole.map(|c| c.place.position), distance),
+                &mut |corners: [Corner; 3]| {
+                    let [a, b, c] = corners.map(|c| c.place.position);
+                    let area = triangle::area(a, b, c);
+                    let density = (corners[0].density + corners[1].density + corners[2].density) / 3.0;
+                    let mass = area * density;
+                    if mass <= 0.0 {
+                        return None;
+                    }
+                    let halvings = libm::log2(density.max(1.0)) * 0.5;
+                    let side = CLUMP * scale.d_m * libm::exp2(-libm::floor(halvings));
+                    let cube = cell_key((a + b + c) / 3.0 + from_low, side);
+                    let tile = Tile { corners: corners.map(|c| c.id), face, patch, mass, area };
+                    Some(((patch, halvings as u32, cube), tile))
+                },
+                shared,
+            );
         }
-        tiles
+        cut
     });
-    // (patch, size of the cube, cube, (piece, tile))
-    let mut keys: Vec<(u32, u32, u64, (u32, u32))> = parallel::map(pieces.len(), |p| {
-        let key = |(i, tile): (u32, &Tile)| {
-            let halvings = libm::log2((tile.mass / tile.area).max(1.0)) * 0.5;
-            let side = CLUMP * scale.d_m * libm::exp2(-libm::floor(halvings));
-            let cube = cell_key(tile.centre() + (scale.middle - low), side);
-            (tile.patch, halvings as u32, cube, (p as u32, i))
-        };
-        (0..).zip(&pieces[p]).map(key).collect::<Vec<_>>()
-    })
-    .concat();
+    // Corners of faces by themselves come after the shared ones, piece by piece.
+    let mut keys: Vec<(Key, (u32, u32))> = Vec::with_capacity(pieces.iter().map(|p| p.tiles.len()).sum());
+    let mut before = Vec::with_capacity(pieces.len());
+    for (p, piece) in (0..).zip(&pieces) {
+        before.push(places.len() as u32 - shared);
+        places.extend(&piece.places);
+        keys.extend((0..).zip(&piece.tiles).map(|(i, (key, _))| (*key, (p, i))));
+    }
     sort(&mut keys);
     let mut clump_ends = Vec::new();
     for (i, pair) in keys.windows(2).enumerate() {
-        if (pair[0].0, pair[0].1, pair[0].2) != (pair[1].0, pair[1].1, pair[1].2) {
+        if pair[0].0 != pair[1].0 {
             clump_ends.push(i as u32 + 1);
         }
     }
     clump_ends.push(keys.len() as u32);
     let tiles = parallel::map(keys.len(), |i| {
-        let (piece, tile) = keys[i].3;
-        pieces[piece as usize][tile as usize]
+        let (piece, tile) = keys[i].1;
+        let (_, tile) = pieces[piece as usize].tiles[tile as usize];
+        let corners = tile.corners.map(|id| if id < shared { id } else { id + before[piece as usize] });
+        Tile { corners, ..tile }
     });
-    Tiles { tiles, clump_ends }
+    Tiles { places, tiles, clump_ends }
 }
 
 fn sort<K: Ord + Send>(keys: &mut [K]) {
@@ -137,19 +165,9 @@ fn sort<K: Ord + Send>(keys: &mut [K]) {
 
 #[derive(Clone, Copy)]
 struct Corner {
-    place: DVec3,
-    normal: DVec3,
+    id: u32,
+    place: Place,
     density: f64,
-}
-
-impl Corner {
-    fn middle(self, other: Self) -> Self {
-        Self {
-            place: (self.place + other.place) * 0.5,
-            normal: (self.normal + other.normal) * 0.5,
-            density: (self.density + other.density) * 0.5,
-        }
-    }
 }
 
 /// How long the sides of a face's tiles may be.
@@ -160,19 +178,42 @@ fn longest_side([a, b, c]: [DVec3; 3], distance: f64) -> f64 {
     (LONGEST * distance).max(2.0 * length / (MOST * (1.0 + due)))
 }
 
-/// Halves a triangle across its longest side until no side is longer than `longest`.
-fn split(corners: [Corner; 3], longest: f64, emit: &mut impl FnMut([Corner; 3])) {
-    let [a, b, c] = corners.map(|c| c.place);
-    let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
-    let long = (0..3).max_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
-    if sides[long] <= longest * longest {
-        emit(corners);
-        return;
+impl Cut {
+    /// A corner that these faces do not share with others; ids start at `first`.
+    fn corner(&mut self, first: u32, place: Place, density: f64) -> Corner {
+        let id = first + self.places.len() as u32;
+        self.places.push(place);
+        Corner { id, place, density }
     }
-    let (from, to, apex) = (corners[long], corners[(long + 1) % 3], corners[(long + 2) % 3]);
-    let middle = from.middle(to);
-    split([from, middle, apex], longest, emit);
-    split([middle, to, apex], longest, emit);
+
+    fn middle(&mut self, first: u32, a: &Corner, b: &Corner) -> Corner {
+        let place = Place {
+            position: (a.place.position + b.place.position) * 0.5,
+            normal: (a.place.normal + b.place.normal) * 0.5,
+        };
+        self.corner(first, place, (a.density + b.density) * 0.5)
+    }
+
+    /// Halves a triangle across its longest side until no side is longer than `longest`.
+    fn split(
+        &mut self,
+        corners: [Corner; 3],
+        longest: f64,
+        tile: &mut impl FnMut([Corner; 3]) -> Option<(Key, Tile)>,
+        first: u32,
+    ) {
+        let [a, b, c] = corners.map(|c| c.place.position);
+        let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+        let long = (0..3).max_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
+        if sides[long] <= longest * longest {
+            self.tiles.extend(tile(corners));
+            return;
+        }
+        let (from, to, apex) = (corners[long], corners[(long + 1) % 3], corners[(long + 2) % 3]);
+        let middle = self.middle(first, &from, &to);
+        self.split([from, middle, apex], longest, tile, first);
+        self.split([middle, to, apex], longest, tile, first);
+    }
 }
 
 /// The cube of side `cell` that holds `p` (coordinates not negative), numbered along a Morton curve.

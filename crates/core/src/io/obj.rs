@@ -83,7 +83,7 @@ fn plain(text: &str) -> (String, usize) {
     let mut plain = String::with_capacity(2 * text.len());
     let mut vertices = 0;
     for_each_statement(text, |statement, line_breaks| {
-        let mut words = statement.split('#').next().unwrap_or_default().split_ascii_whitespace();
+        let mut words = statement.split('#').next().unwrap_or_default().split_whitespace();
         match words.next() {
             Some("v") => {
                 vertices += 1;
@@ -185,7 +185,7 @@ fn out_of_bounds(plain: &str) -> (Place, String) {
     let mut before = 0;
     for (line, text) in plain.lines().enumerate().skip(1) {
         before += usize::from(text.starts_with('v'));
-        for word in text.split_ascii_whitespace().skip(1).filter(|_| text.starts_with('f')) {
+        for word in text.split_whitespace().skip(1).filter(|_| text.starts_with('f')) {
             let index: i64 = word.parse().unwrap_or(0);
             let vertex = if index < 0 { before as i64 + index } else { index - 1 };
             if !(0..total as i64).contains(&vertex) {
@@ -220,14 +220,17 @@ mod tests {
     /// Found by fuzzing: polygons and what belongs to them were told apart by different white space.
     #[test]
     fn attributes_keep_pace_with_the_polygons() {
-        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf\u{c}1 2 3\nusemtl b\n\u{a0}f 1 2 3\n\u{b}f 1 2 3\nf 3 2 1\n\
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf\u{c}1 \u{b} 2 3\nusemtl b\n\u{a0}f 1 2 3\n\u{b}f 1 2 3\nf 3 2 1\n\
                     f#1 2 3\nusemtl c\nf 2 1 3\n";
         let model = read_model(text.as_bytes(), Detail::Attributes, &|_| Err(String::new())).unwrap();
         let materials = &model.attributes.material_of;
         let of: Vec<_> = (0..model.soup.polygon_count())
             .map(|p| (model.soup.polygon(p).len(), materials.get(p).map(|m| &*materials.names()[m])))
             .collect();
-        assert_eq!(of, [(3, Some("a")), (3, Some("b")), (0, Some("b")), (3, Some("c"))]);
+        assert_eq!(
+            of,
+            [(3, Some("a")), (3, Some("b")), (3, Some("b")), (3, Some("b")), (0, Some("b")), (3, Some("c"))]
+        );
     }
 
     #[test]

@@ -12,7 +12,7 @@ use super::capsule::{Segment, covered_area, covered_area_of_pair, drop_dominated
 use super::flood::{Near, Sources, flood};
 use super::open::OpenEdge;
 use super::total_area;
-use crate::parallel::map;
+use crate::parallel::{map, map_chunks};
 use crate::unfold::{Strip, Strips};
 
 /// The largest share of the total area that may stay undecided; it is counted half.
@@ -20,6 +20,9 @@ const UNDECIDED: f64 = 1e-4;
 
 /// Triangles are not cut more often than this: their pieces are then a millionth of their size.
 const DEEPEST: usize = 20;
+
+/// How many faces are judged together.
+const CHUNK: usize = 1 << 12;
 
 /// Comparing every segment with every other pays only when few are left.
 const FEW: usize = 16;
@@ -64,19 +67,29 @@ fn judge_strip(strip: &Strip, open: &[OpenEdge], d_m: f64) -> (f64, Vec<Piece>) 
     let sources = Sources::new(open.iter().map(|e| Segment { from: e.from, to: e.to }).collect());
     let mut covered = 0.0;
     let mut undecided = Vec::new();
-    for (face, near) in flood(strip, &places, &sources, d_m).into_iter().enumerate() {
-        let corners = strip.triangle(face);
-        let edges: Vec<Segment> = match near {
-            Near::Whole => {
-                covered += area(&corners);
-                continue;
+    let near = flood(strip, &places, &sources, d_m);
+    let judged = map_chunks(near.len(), CHUNK, |range| {
+        let mut covered = 0.0;
+        let mut undecided = Vec::new();
+        for face in range {
+            let corners = strip.triangle(face);
+            let edges: Vec<Segment> = match &near[face] {
+                Near::Whole => {
+                    covered += area(&corners);
+                    continue;
+                }
+                Near::Sources(near) => near.iter().map(|&s| sources.segment(s)).collect(),
+            };
+            match judge(Piece { corners, edges }, d_m) {
+                Verdict::Covered(part) => covered += part,
+                Verdict::Undecided(piece) => undecided.push(piece),
             }
-            Near::Sources(near) => near.into_iter().map(|s| sources.segment(s)).collect(),
-        };
-        match judge(Piece { corners, edges }, d_m) {
-            Verdict::Covered(part) => covered += part,
-            Verdict::Undecided(piece) => undecided.push(piece),
         }
+        (covered, undecided)
+    });
+    for (part, pieces) in judged {
+        covered += part;
+        undecided.extend(pieces);
     }
     (covered, undecided)
 }

@@ -11,6 +11,7 @@ pub struct Topology {
     faces: Vec<[VertexId; 3]>,
     twins: Vec<u32>,
     vertex_count: usize,
+    components: Components,
 }
 
 /// Edges that could not join two triangles and became borders.
@@ -83,7 +84,8 @@ impl Topology {
                 i = j;
             }
         }
-        (Self { faces, twins, vertex_count }, split)
+        let components = Components::new(&twins);
+        (Self { faces, twins, vertex_count, components }, split)
     }
 
     /// How many vertices there are.
@@ -137,31 +139,36 @@ impl Topology {
         (self.twins.len() + self.border_edge_count()) / 2
     }
 
-    /// The connected components. Linear time.
-    pub fn components(&self) -> Components {
+    /// The connected components.
+    pub fn components(&self) -> &Components {
+        &self.components
+    }
+}
+
+impl Components {
+    /// Linear time.
+    fn new(twins: &[u32]) -> Self {
         const UNSEEN: u32 = u32::MAX;
-        let mut of_face = vec![UNSEEN; self.faces.len()];
+        let mut of_face = vec![UNSEEN; twins.len() / 3];
         let mut count = 0;
         let mut stack = Vec::new();
-        for seed in self.face_ids() {
-            if of_face[seed.index()] != UNSEEN {
+        for seed in 0..of_face.len() {
+            if of_face[seed] != UNSEEN {
                 continue;
             }
-            of_face[seed.index()] = count;
+            of_face[seed] = count;
             stack.push(seed);
             while let Some(face) = stack.pop() {
-                for c in 0..3 {
-                    if let Some(twin) = self.twin(HalfedgeId::of(face, c)) {
-                        let neighbour = twin.face();
-                        if of_face[neighbour.index()] == UNSEEN {
-                            of_face[neighbour.index()] = count;
-                            stack.push(neighbour);
-                        }
+                for &twin in twins[3 * face..3 * face + 3].iter().filter(|&&twin| twin != BORDER) {
+                    let neighbour = twin as usize / 3;
+                    if of_face[neighbour] == UNSEEN {
+                        of_face[neighbour] = count;
+                        stack.push(neighbour);
                     }
                 }
             }
             count += 1;
         }
-        Components { of_face, count: count as usize }
+        Self { of_face, count: count as usize }
     }
 }

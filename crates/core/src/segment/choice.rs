@@ -2,8 +2,9 @@
 
 use super::fitting::{Tie, fit};
 use super::growth::Next;
-use super::planar::Planar;
-use super::{SegmentOptions, Segmentation, grow};
+use super::planar::{Planar, Shapes};
+use super::seeds::component_seeds;
+use super::{Segment, SegmentOptions, Segmentation, grow};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 
@@ -30,21 +31,32 @@ const SMALL: usize = 20_000;
 /// Tries the candidates and puts together what is best for each component.
 pub(super) fn least_open(mesh: &SurfaceMesh, options: &SegmentOptions, tolerance: f64) -> Segmentation {
     let components = mesh.topology().components();
+    let shapes = Shapes::new(mesh);
+    let seeds = component_seeds(mesh);
     let count = if mesh.face_count() > SMALL { 2 } else { CANDIDATES.len() };
-    let tried = parallel::map(count, |k| {
-        let segmentation = match CANDIDATES[k] {
-            Candidate::Fit(tie) => fit(mesh, tolerance, tie),
-            Candidate::Grow(next) => grow(mesh, options, next),
-        };
-        let open = Planar::of(mesh, &segmentation).open_lengths(mesh, &segmentation, &components, tolerance);
-        (segmentation, open)
+    let tried = parallel::map(count, |k| match CANDIDATES[k] {
+        Candidate::Fit(tie) => {
+            let mut open = vec![0.0; components.count];
+            let segments = fit(mesh, &shapes, &seeds, tolerance, tie).into_iter().zip(&seeds);
+            let segments = segments.map(|(fitted, seed)| {
+                open[components.of_face[seed.face().index()] as usize] = fitted.open;
+                fitted.segment
+            });
+            (segments.collect(), open)
+        }
+        Candidate::Grow(next) => {
+            let segmentation = grow(mesh, options, next);
+            let planar = Planar::of(mesh, &shapes, &segmentation);
+            let open = planar.open_lengths(mesh, &segmentation, components, tolerance);
+            (segmentation.segments, open)
+        }
     });
     let best: Vec<usize> = (0..components.count)
         .map(|c| (1..tried.len()).fold(0, |best, k| if tried[k].1[c] < tried[best].1[c] { k } else { best }))
         .collect();
-    let mut segments = Vec::new();
-    for (k, (segmentation, _)) in tried.into_iter().enumerate() {
-        segments.extend(segmentation.segments.into_iter().filter(|segment| {
+    let mut segments: Vec<Segment> = Vec::new();
+    for (k, (tried, _)) in tried.into_iter().enumerate() {
+        segments.extend(tried.into_iter().filter(|segment: &Segment| {
             let component = segment.attachments.first().map(|a| components.of_face[a.face.index()]);
             component.is_some_and(|c| best[c as usize] == k)
         }));

@@ -6,55 +6,123 @@ use super::Segmentation;
 use crate::geometry::triangle;
 use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::{Components, SurfaceMesh};
+use crate::parallel;
+
+/// The shapes of all triangles, seen from each of their sides.
+pub(super) struct Shapes {
+    /// The length of each side.
+    lengths: Vec<f64>,
+    /// Where the corner opposite to each side lies when that side goes from (0, 0) to (1, 0).
+    apexes: Vec<DVec2>,
+}
+
+impl Shapes {
+    pub(super) fn new(mesh: &SurfaceMesh) -> Self {
+        const CHUNK: usize = 1 << 13;
+        let pieces = parallel::map_chunks(mesh.face_count(), CHUNK, |range| {
+            let mut shapes = Self {
+                lengths: Vec::with_capacity(3 * range.len()),
+                apexes: Vec::with_capacity(3 * range.len()),
+            };
+            for face in range {
+                let [a, b, c] = mesh.triangle(FaceId::new(face));
+                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
+                    let (length, x, y) = triangle::flatten(a, b, c);
+                    shapes.lengths.push(length);
+                    // Faces have an area, so no side is zero.
+                    shapes.apexes.push(DVec2::new(x, y) / length);
+                }
+            }
+            shapes
+        });
+        let count = 3 * mesh.face_count();
+        let mut shapes = Self { lengths: Vec::with_capacity(count), apexes: Vec::with_capacity(count) };
+        for piece in pieces {
+            shapes.lengths.extend(piece.lengths);
+            shapes.apexes.extend(piece.apexes);
+        }
+        shapes
+    }
+
+    #[inline]
+    pub(super) fn length(&self, side: HalfedgeId) -> f64 {
+        self.lengths[side.index()]
+    }
+
+    /// The corners of a face when its side `side` goes from `from` to `to`.
+    #[inline]
+    fn beside(&self, side: HalfedgeId, from: DVec2, to: DVec2) -> [DVec2; 3] {
+        let apex = self.apexes[side.index()];
+        let along = to - from;
+        let apex = from + along * apex.x + along.perp() * apex.y;
+        match side.corner() {
+            0 => [from, to, apex],
+            1 => [apex, from, to],
+            _ => [to, apex, from],
+        }
+    }
+
+    /// The corners of the first face of a segment.
+    fn first(&self, face: FaceId) -> [DVec2; 3] {
+        let side = HalfedgeId::of(face, 0);
+        self.beside(side, DVec2::ZERO, DVec2::new(self.length(side), 0.0))
+    }
+}
 
 /// The planar corners of each face that is laid.
-pub(super) struct Planar(Vec<[DVec2; 3]>);
+pub(super) struct Planar<'a> {
+    shapes: &'a Shapes,
+    corners: Vec<[DVec2; 3]>,
+}
 
-impl Planar {
-    pub(super) fn new(mesh: &SurfaceMesh) -> Self {
-        Self(vec![[DVec2::ZERO; 3]; mesh.face_count()])
+impl<'a> Planar<'a> {
+    pub(super) fn new(shapes: &'a Shapes) -> Self {
+        Self { shapes, corners: vec![[DVec2::ZERO; 3]; shapes.lengths.len() / 3] }
     }
 
     /// The planar corners of all faces of a segmentation.
-    pub(super) fn of(mesh: &SurfaceMesh, segmentation: &Segmentation) -> Self {
-        let mut planar = Self::new(mesh);
+    pub(super) fn of(mesh: &SurfaceMesh, shapes: &'a Shapes, segmentation: &Segmentation) -> Self {
+        let mut planar = Self::new(shapes);
         for attachment in segmentation.segments.iter().flat_map(|s| &s.attachments) {
-            let corners = match attachment.across {
-                Some(across) => planar.beside(mesh, across),
-                None => first(mesh, attachment.face),
-            };
-            planar.lay(attachment.face, corners);
+            planar.lay(attachment.face, planar.beside(mesh, attachment.face, attachment.across));
         }
         planar
     }
 
+    #[inline]
     pub(super) fn lay(&mut self, face: FaceId, corners: [DVec2; 3]) {
-        self.0[face.index()] = corners;
+        self.corners[face.index()] = corners;
     }
 
-    /// The corners of the face of `across` when it is attached across that side to the face behind it.
-    pub(super) fn beside(&self, mesh: &SurfaceMesh, across: HalfedgeId) -> [DVec2; 3] {
-        let Some(twin) = mesh.topology().twin(across) else { return first(mesh, across.face()) };
-        let space = mesh.triangle(across.face());
-        let own = across.corner();
-        let (_, x, y) = triangle::flatten(space[own], space[(own + 1) % 3], space[(own + 2) % 3]);
-        let parent = self.0[twin.face().index()];
-        // The twin runs the other way.
-        let (to, from) = (parent[twin.corner()], parent[(twin.corner() + 1) % 3]);
-        let along = (to - from).try_normalize().unwrap_or(DVec2::X);
-        let mut corners = [DVec2::ZERO; 3];
-        corners[own] = from;
-        corners[(own + 1) % 3] = to;
-        corners[(own + 2) % 3] = from + along * x + along.perp() * y;
-        corners
+    /// The corners of a face when it is attached across its side `across` to the face behind it.
+    #[inline]
+    pub(super) fn beside(&self, mesh: &SurfaceMesh, face: FaceId, across: Option<HalfedgeId>) -> [DVec2; 3] {
+        match across.and_then(|across| Some((across, mesh.topology().twin(across)?))) {
+            Some((across, twin)) => {
+                // The twin runs the other way.
+                let (to, from) = self.ends(twin);
+                self.shapes.beside(across, from, to)
+            }
+            None => self.shapes.first(face),
+        }
     }
 
-    /// How far apart a side of a face, whose corners these are, and its twin on a face that is laid would lie.
-    pub(super) fn gap(&self, corners: &[DVec2; 3], side: HalfedgeId, twin: HalfedgeId) -> f64 {
-        let other = self.0[twin.face().index()];
-        let start = corners[side.corner()].distance_squared(other[(twin.corner() + 1) % 3]);
-        let end = corners[(side.corner() + 1) % 3].distance_squared(other[twin.corner()]);
-        libm::sqrt(start.max(end))
+    /// The ends of a side of a face that is laid.
+    #[inline]
+    fn ends(&self, side: HalfedgeId) -> (DVec2, DVec2) {
+        let corners = &self.corners[side.face().index()];
+        match side.corner() {
+            0 => (corners[0], corners[1]),
+            1 => (corners[1], corners[2]),
+            _ => (corners[2], corners[0]),
+        }
+    }
+
+    /// How far apart a side that goes from `from` to `to` and its twin, on a face that is laid, would lie.
+    #[inline]
+    pub(super) fn gap(&self, from: DVec2, to: DVec2, twin: HalfedgeId) -> f64 {
+        let (twin_from, twin_to) = self.ends(twin);
+        libm::sqrt(from.distance_squared(twin_to).max(to.distance_squared(twin_from)))
     }
 
     /// For each component the length of its edges, each once, whose two sides lie in different segments or farther
@@ -71,20 +139,14 @@ impl Planar {
         for face in mesh.topology().face_ids() {
             for side in (0..3).map(|c| HalfedgeId::of(face, c)) {
                 let Some(twin) = mesh.topology().twin(side).filter(|twin| side < *twin) else { continue };
+                let (from, to) = self.ends(side);
                 if segment[face.index()] != segment[twin.face().index()]
-                    || self.gap(&self.0[face.index()], side, twin) > tolerance
+                    || self.gap(from, to, twin) > tolerance
                 {
-                    open[components.of_face[face.index()] as usize] += mesh.edge_length(side);
+                    open[components.of_face[face.index()] as usize] += self.shapes.length(side);
                 }
             }
         }
         open
     }
-}
-
-/// The corners of the first face of a segment.
-pub(super) fn first(mesh: &SurfaceMesh, face: FaceId) -> [DVec2; 3] {
-    let [a, b, c] = mesh.triangle(face);
-    let (length, x, y) = triangle::flatten(a, b, c);
-    [DVec2::ZERO, DVec2::new(length, 0.0), DVec2::new(x, y)]
 }

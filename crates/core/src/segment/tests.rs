@@ -76,9 +76,21 @@ fn each_component_takes_what_is_best_for_it() {
 }
 
 #[test]
-fn angles_and_shares_play_no_part_in_fitting() {
-    let mesh = planted::mesh(&Shape::Cube.generate());
-    let fitted = fitting::fit(&mesh, 0.01, fitting::Tie::Flattest);
-    assert_eq!(fitted.segments.len(), 1);
-    assert_eq!(fitted.segments[0].attachments.len(), mesh.face_count());
+fn fitting_reaches_all_of_a_component_and_knows_what_it_opens() {
+    for shape in [Shape::Cube, Shape::Sphere, Shape::Cup, Shape::Torus] {
+        let mesh = planted::mesh(&shape.generate());
+        let tolerance = 0.1 * libm::sqrt(mesh.area() / 300.0);
+        let (shapes, seeds) = (planar::Shapes::new(&mesh), seeds::component_seeds(&mesh));
+        for tie in [fitting::Tie::Flattest, fitting::Tie::Nearest, fitting::Tie::Tightest] {
+            let fitted = fitting::fit(&mesh, &shapes, &seeds, tolerance, tie);
+            assert_eq!(fitted.len(), mesh.topology().components().count);
+            let known: f64 = fitted.iter().map(|f| f.open).sum();
+            let segmentation = Segmentation { segments: fitted.into_iter().map(|f| f.segment).collect() };
+            let faces: usize = segmentation.segments.iter().map(|s| s.attachments.len()).sum();
+            assert_eq!(faces, mesh.face_count());
+            let laid = planar::Planar::of(&mesh, &shapes, &segmentation);
+            let open = laid.open_lengths(&mesh, &segmentation, mesh.topology().components(), tolerance);
+            assert!((known - open.iter().sum::<f64>()).abs() <= 1e-9 * mesh.diagonal(), "{shape:?} {tie:?}");
+        }
+    }
 }

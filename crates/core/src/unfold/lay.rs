@@ -6,6 +6,7 @@ use super::FacePlace;
 use crate::geometry::triangle;
 use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
+use crate::parallel;
 use crate::segment::Segment;
 
 /// Two copies of a vertex nearer than this, relative to the strip's extent, are one: rounding moved them apart, not
@@ -19,9 +20,13 @@ pub(super) struct Planar {
     pub(super) vertices: Vec<DVec2>,
 }
 
-/// The planar vertices at the ends of `halfedge` (start, end), whose face has these corners.
-pub(super) fn ends(corners: [u32; 3], halfedge: HalfedgeId) -> (u32, u32) {
-    (corners[halfedge.corner()], corners[(halfedge.corner() + 1) % 3])
+impl Planar {
+    /// The planar vertices at the ends of a side: start, end.
+    pub(super) fn ends(&self, side: u32) -> (u32, u32) {
+        let corners = &self.corners[side as usize / 3];
+        let corner = side as usize % 3;
+        (corners[corner], corners[if corner == 2 { 0 } else { corner + 1 }])
+    }
 }
 
 /// Lays the triangles along the segment's spanning tree.
@@ -37,9 +42,8 @@ pub(super) fn lay(mesh: &SurfaceMesh, segment: &Segment, places: &[FacePlace]) -
         let space = mesh.triangle(face);
         let twin = attachment.across.and_then(|h| mesh.topology().twin(h).map(|t| (h, t)));
         let corners = if let Some((across, twin)) = twin {
-            let parent = planar.corners[places[twin.face().index()].index as usize];
             // The twin runs the other way.
-            let (to, from) = ends(parent, twin);
+            let (to, from) = planar.ends(3 * places[twin.face().index()].index + twin.corner() as u32);
             let first = across.corner();
             let (_, x, y) = triangle::flatten(space[first], space[(first + 1) % 3], space[(first + 2) % 3]);
             let a = planar.vertices[from as usize];
@@ -63,29 +67,42 @@ pub(super) fn lay(mesh: &SurfaceMesh, segment: &Segment, places: &[FacePlace]) -
     planar
 }
 
+/// For each side of the strip's faces (side `c` of its `i`-th face is `3 i + c`) the same edge as its neighbour in the
+/// strip sees it; `None` where the surface or the strip ends.
+pub(super) fn twins(
+    mesh: &SurfaceMesh,
+    strip: StripId,
+    places: &[FacePlace],
+    faces: &[FaceId],
+) -> Vec<Option<u32>> {
+    let side = |face, corner| {
+        let twin = mesh.topology().twin(HalfedgeId::of(face, corner))?;
+        let place = places[twin.face().index()];
+        (place.strip == strip).then(|| 3 * place.index + twin.corner() as u32)
+    };
+    faces.iter().flat_map(|&face| [0, 1, 2].map(|corner| side(face, corner))).collect()
+}
+
 /// Joins copies of a vertex on both sides of a cut that lie together exactly (up to rounding), so that no gap or
 /// overlap of rounding's width can lose or double a point.
-pub(super) fn close_seams(mesh: &SurfaceMesh, strip: StripId, places: &[FacePlace], planar: &mut Planar) {
+pub(super) fn close_seams(planar: &mut Planar, twins: &[Option<u32>]) {
     let extent = planar.vertices.iter().fold(0.0_f64, |m, v| m.max(v.abs().max_element()));
     let tolerance = COINCIDENT * extent;
     let mut joined: Vec<u32> = (0..planar.vertices.len() as u32).collect();
     let mut any = false;
-    for (i, &face) in planar.faces.iter().enumerate() {
-        for corner in 0..3 {
-            let halfedge = HalfedgeId::of(face, corner);
-            let Some(twin) = mesh.topology().twin(halfedge) else { continue };
-            let place = places[twin.face().index()];
-            if place.strip != strip || twin < halfedge {
+    for (side, twin) in (0u32..).zip(twins) {
+        let Some(twin) = twin.filter(|twin| side < *twin) else { continue };
+        let (from, to) = planar.ends(side);
+        // The twin runs the other way.
+        let (twin_to, twin_from) = planar.ends(twin);
+        for (a, b) in [(from, twin_from), (to, twin_to)] {
+            if a == b {
                 continue;
             }
-            let (from, to) = ends(planar.corners[i], halfedge);
-            let (twin_to, twin_from) = ends(planar.corners[place.index as usize], twin);
-            for (a, b) in [(from, twin_from), (to, twin_to)] {
-                let (a, b) = (root(&mut joined, a), root(&mut joined, b));
-                if a != b && planar.vertices[a as usize].distance(planar.vertices[b as usize]) <= tolerance {
-                    joined[a.max(b) as usize] = a.min(b);
-                    any = true;
-                }
+            let (a, b) = (root(&mut joined, a), root(&mut joined, b));
+            if a != b && planar.vertices[a as usize].distance(planar.vertices[b as usize]) <= tolerance {
+                joined[a.max(b) as usize] = a.min(b);
+                any = true;
             }
         }
     }
@@ -117,12 +134,14 @@ pub(super) fn settle(planar: &mut Planar) {
         }
         (low, high)
     };
-    let mut best = (f64::INFINITY, DMat2::IDENTITY, DVec2::ZERO);
-    for t in 0..TURNS {
-        let (sin, cos) = libm::sincos(f64::from(t) * std::f64::consts::FRAC_PI_2 / f64::from(TURNS));
+    let turns = parallel::map(TURNS as usize, |t| {
+        let (sin, cos) = libm::sincos(t as f64 * std::f64::consts::FRAC_PI_2 / f64::from(TURNS));
         let turn = DMat2::from_cols(DVec2::new(cos, sin), DVec2::new(-sin, cos));
         let (low, high) = box_of(turn, &planar.vertices);
-        let side = (high - low).max_element();
+        (turn, low, (high - low).max_element())
+    });
+    let mut best = (f64::INFINITY, DMat2::IDENTITY, DVec2::ZERO);
+    for (turn, low, side) in turns {
         // A turn must pay: for a plane figure drawn along the axes, staying put keeps its coordinates exact.
         if side < best.0 * (1.0 - 1e-6) {
             best = (side, turn, low);

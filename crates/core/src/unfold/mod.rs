@@ -143,9 +143,10 @@ pub fn unfold(mesh: &SurfaceMesh, segmentation: &Segmentation) -> Strips {
     }
     let strips = parallel::map(segmentation.segments.len(), |s| {
         let mut planar = lay::lay(mesh, &segmentation.segments[s], &places);
-        lay::close_seams(mesh, StripId::new(s), &places, &mut planar);
+        let twins = lay::twins(mesh, StripId::new(s), &places, &planar.faces);
+        lay::close_seams(&mut planar, &twins);
         lay::settle(&mut planar);
-        border::strip(mesh, StripId::new(s), &places, planar)
+        border::strip(mesh, StripId::new(s), &places, planar, &twins)
     });
     Strips { strips, places }
 }

@@ -86,7 +86,7 @@ impl Reader {
     }
 
     fn face(&mut self, rest: &str) -> Result<(), String> {
-        for word in rest.split('#').next().unwrap_or_default().split_ascii_whitespace() {
+        for word in rest.split('#').next().unwrap_or_default().split_whitespace() {
             let mut indices = word.split('/');
             // The vertex itself is known already.
             indices.next();
@@ -106,11 +106,11 @@ impl Reader {
     }
 }
 
-/// The keyword and what follows it, told apart exactly as where the polygons are read: by what ASCII calls white space,
-/// and `#`.
+/// The keyword and what follows it, told apart exactly as where the polygons are read, by `tobj` too: by white space and
+/// `#`.
 fn keyword(statement: &str) -> (&str, &str) {
-    let statement = statement.trim_ascii_start();
-    let end = statement.find(|c: char| c.is_ascii_whitespace() || c == '#').unwrap_or(statement.len());
+    let statement = statement.trim_start();
+    let end = statement.find(|c: char| c.is_whitespace() || c == '#').unwrap_or(statement.len());
     statement.split_at(end)
 }
 
@@ -122,7 +122,7 @@ fn named(names: &mut PolygonNames, name: &str) -> Option<usize> {
 
 /// The first `N` numbers; `None` unless there are as many.
 fn numbers<const N: usize>(rest: &str) -> Option<[f64; N]> {
-    let mut words = rest.split('#').next()?.split_ascii_whitespace();
+    let mut words = rest.split('#').next()?.split_whitespace();
     let mut numbers = [0.0; N];
     for number in &mut numbers {
         *number = f64::from_str(words.next()?).ok().filter(|number| number.is_finite())?;
