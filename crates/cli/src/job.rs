@@ -188,7 +188,7 @@ pub(crate) fn wrap_options(segment: &SegmentArgs, points: &SequenceArgs) -> Outc
 
 /// Refuses more points than fit in the memory allowed, by what runs took: 1,000,000 and 4,000,000 points wrapped, and
 /// 300,000 equalized.
-pub(crate) fn points_fit(options: &Options, area: f64, max_memory: Option<u64>) -> Outcome {
+pub(crate) fn points_fit(options: &Options, area: f64, max_memory: Option<u64>) -> anyhow::Result<()> {
     let Some(most) = max_memory else { return Ok(()) };
     let n = match options.request {
         Request::Count(n) => n as f64,
@@ -204,12 +204,12 @@ pub(crate) fn points_fit(options: &Options, area: f64, max_memory: Option<u64>) 
     if n * each <= most as f64 {
         return Ok(());
     }
-    Err(Failure::Failed(anyhow::anyhow!(
+    Err(anyhow::anyhow!(
         "{n:.0} points take about {:.0} MB of memory, but --max-memory allows {:.0}: ask for fewer points, raise \
          --max-memory{advice}",
         n * each / 1e6,
         most as f64 / 1e6
-    )))
+    ))
 }
 
 fn request(args: &RequestArgs) -> Request {

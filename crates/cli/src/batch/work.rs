@@ -102,6 +102,8 @@ impl<'a> Plan<'a> {
         let mesh = MeshArgs { mesh: path.to_path_buf(), reading: *reading };
         let input = input::read_detail(&mesh, job::detail(placing, &self.carried), &placing.only, stages)
             .map_err(|error| trouble(kind_of(&error, path))(error))?;
+        job::points_fit(&self.options, input.mesh.area(), reading.max_memory)
+            .map_err(trouble(Kind::Options))?;
         let density = weights::density(&placing.weights, &input).map_err(trouble(Kind::Options))?;
         let run = pipeline::run_weighted(&input.mesh, &density, &self.options, stages)
             .map_err(|error| trouble(Kind::Options)(error.into()))?;
