@@ -3,10 +3,13 @@
 use std::time::Instant;
 
 use crate::command::{cargo, run};
-use crate::{Failure, browser, in_ci, web};
+use crate::{Failure, browser, fuzz, in_ci, web};
 
 /// What is published.
 const PACKAGES: [&str; 3] = ["ldwrap", "ldwrap-cli", "ldwrap-web"];
+
+/// For how long each target is fuzzed; eight targets take two minutes, besides their build.
+const FUZZ_SECONDS: u32 = 12;
 
 /// Runs all checks, each shown; stops at the first that fails. Without a wasm compiler or a browser the tests of the
 /// page are skipped, loudly; with `CI=true` that is an error.
@@ -50,6 +53,7 @@ pub fn run_all() -> Result<(), Failure> {
         }
         run(&mut test)
     })?;
+    step("fuzz", || fuzz::run_all(FUZZ_SECONDS))?;
     step("documentation", || {
         run(cargo()
             .args(["doc", "--workspace", "--no-deps", "--all-features"])

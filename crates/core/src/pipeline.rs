@@ -153,7 +153,10 @@ pub enum OptionsError {
     #[error(transparent)]
     Sequence(#[from] SequenceError),
     /// More points of the planar domain would be needed than memory is spent on.
-    #[error("{wanted:.3e} points of the planar domain are needed, which is too many: ask for fewer points")]
+    #[error(
+        "{wanted:.3e} points of the planar domain are needed, which is too many: ask for fewer points; parts far \
+         longer than wide need the most"
+    )]
     TooMany {
         /// How many.
         wanted: f64,

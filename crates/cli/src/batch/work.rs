@@ -102,6 +102,8 @@ impl<'a> Plan<'a> {
         let mesh = MeshArgs { mesh: path.to_path_buf(), reading: *reading };
         let input = input::read_detail(&mesh, job::detail(placing, &self.carried), &placing.only, stages)
             .map_err(|error| trouble(kind_of(&error, path))(error))?;
+        job::points_fit(&self.options, input.mesh.area(), reading.max_memory)
+            .map_err(trouble(Kind::Options))?;
         let ground = weights::prepare(placing, input, self.options).map_err(trouble(Kind::Options))?;
         let run = ground.run(stages).map_err(trouble(Kind::Options))?;
         let (input, samples) = (&ground.input, ground.lifted(&run.samples));

@@ -31,6 +31,7 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
+    job::points_fit(&options, input.mesh.area(), args.mesh.reading.max_memory)?;
     let ground = weights::prepare(placing, input, options)?;
     let run = ground.run(&stages)?;
     stages.begin("irregularity", 0);

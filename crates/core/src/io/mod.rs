@@ -4,6 +4,7 @@ mod clip;
 mod detect;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+mod limits;
 #[cfg(feature = "io")]
 pub mod mesh_out;
 #[cfg(feature = "obj")]
@@ -20,4 +21,8 @@ pub mod stl;
 
 pub use clip::ClipError;
 pub use detect::{MeshFormat, detect};
-pub use read::{Detail, Model, Place, ReadError, Resolver, read_mesh, read_model, read_model_as};
+pub use limits::Limits;
+pub use read::{
+    Detail, Model, Place, ReadError, ReadOptions, Resolver, read_mesh, read_model, read_model_as,
+    read_model_with,
+};
