@@ -25,13 +25,13 @@ pub(crate) fn write(report: &mut Report, meshes: &Path) -> Outcome {
             report.say(&format!("**{file}**, {} triangles:", mesh.face_count()));
             measures(report, &mesh, RIVALS, &[56, 335, 1_000])?;
             report.say(&format!(
-                "`ldwrap-cli compare {file} -n 56,335,1000 --seeds 3 --methods equalize,hilbert,poisson`"
+                "`ldwrap-cli compare {file} -n 56,335,1000 --seeds 5 --methods equalize,hilbert,poisson`"
             ));
         }
     }
     let sphere = checked(&Shape::Sphere.generate())?;
     report.say("**sphere.obj**:");
     measures(report, &sphere, RIVALS, &[56, 335, 1_000])?;
-    report.say("`ldwrap-cli compare sphere.obj -n 56,335,1000 --seeds 3 --methods equalize,hilbert,poisson`");
+    report.say("`ldwrap-cli compare sphere.obj -n 56,335,1000 --seeds 5 --methods equalize,hilbert,poisson`");
     Ok(())
 }

@@ -115,7 +115,7 @@ pub(crate) struct Object {
 }
 
 /// Seeds of each way.
-pub(crate) const SEEDS: u64 = 3;
+pub(crate) const SEEDS: u64 = 5;
 
 /// Pictures, R and all measures of an object.
 pub(crate) fn write(report: &mut Report, mesh: &SurfaceMesh, object: &Object) -> Outcome {
