@@ -1,8 +1,10 @@
-//! Everything that must hold before a change lands: formatting, lints, the page, tests, documentation, packages.
+//! Everything that must hold before a change lands: formatting, lints, the page, tests, instruction counts, documentation,
+//! packages.
 
 use std::time::Instant;
 
 use crate::command::{cargo, run};
+use crate::instructions::{self, Then};
 use crate::{Failure, browser, in_ci, web};
 
 /// What is published.
@@ -49,6 +51,7 @@ pub fn run_all() -> Result<(), Failure> {
         }
         run(&mut test)
     })?;
+    step("instructions", || instructions::check(Then::Compare))?;
     step("documentation", || {
         run(cargo()
             .args(["doc", "--workspace", "--no-deps", "--all-features"])
