@@ -5,10 +5,13 @@ use std::time::Instant;
 
 use crate::command::{cargo, run};
 use crate::instructions::{self, Then};
-use crate::{Failure, browser, in_ci, web};
+use crate::{Failure, browser, fuzz, in_ci, web};
 
 /// What is published.
 const PACKAGES: [&str; 3] = ["ldwrap", "ldwrap-cli", "ldwrap-web"];
+
+/// For how long each target is fuzzed; eight targets take two minutes, besides their build.
+const FUZZ_SECONDS: u32 = 12;
 
 /// Runs all checks, each shown; stops at the first that fails. Without a wasm compiler or a browser the tests of the
 /// page are skipped, loudly; with `CI=true` that is an error.
@@ -40,6 +43,7 @@ pub fn run_all() -> Result<(), Failure> {
             "warnings",
         ]))
     })?;
+    step("features", features)?;
     let page = step("page", page)?;
     step("tests", || {
         let mut test = cargo();
@@ -52,6 +56,7 @@ pub fn run_all() -> Result<(), Failure> {
         run(&mut test)
     })?;
     step("instructions", || instructions::check(Then::Compare))?;
+    step("fuzz", || fuzz::run_all(FUZZ_SECONDS))?;
     step("documentation", || {
         run(cargo()
             .args(["doc", "--workspace", "--no-deps", "--all-features"])
@@ -70,6 +75,30 @@ pub fn run_all() -> Result<(), Failure> {
     }
     eprintln!("\nall checks hold");
     Ok(())
+}
+
+/// The library's features, each of which must compile alone.
+const FEATURES: [&str; 12] =
+    ["obj", "gltf", "ply", "stl", "csv", "json", "gz", "npz", "textures", "serde", "parallel", "rayon"];
+
+/// The library with each feature alone, and with none for wasm.
+fn features() -> Result<(), Failure> {
+    for feature in FEATURES {
+        run(cargo()
+            .args(["clippy", "-p", "ldwrap", "--no-default-features", "--features", feature])
+            .args(["--", "-D", "warnings"]))?;
+    }
+    match crate::toolchain::WasmToolchain::find() {
+        Ok(toolchain) => run(toolchain
+            .cargo_build()
+            .args(["-p", "ldwrap", "--no-default-features", "--target-dir"])
+            .arg(crate::target().join("wasm"))),
+        Err(reason) if in_ci() => Err(reason),
+        Err(reason) => {
+            eprintln!("SKIPPED: THE LIBRARY FOR WASM: {reason}");
+            Ok(())
+        }
+    }
 }
 
 struct Page {

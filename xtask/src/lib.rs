@@ -4,6 +4,7 @@
 pub mod browser;
 pub mod checks;
 pub mod command;
+pub mod fuzz;
 pub mod instructions;
 pub mod serve;
 pub mod toolchain;

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use xtask::instructions::{self, Then};
-use xtask::{browser, checks, serve, web};
+use xtask::{browser, checks, fuzz, serve, web};
 
 const HELP: &str = "\
 cargo xtask test               everything that must hold before a change lands (see CONTRIBUTING.md)
 cargo xtask web [--api]        builds the page into target/web; --api the JavaScript package into target/npm
 cargo xtask serve [PORT]       builds the page and serves it on this machine (default port 8080)
+cargo xtask fuzz [SECONDS]     fuzzes each reader and the pipeline for so long (default 600)
 cargo xtask instructions       counts the instructions of fixed jobs (needs valgrind); --renew writes them as the new bound
 cargo xtask help               this text";
 
@@ -30,6 +31,11 @@ fn main() -> ExitCode {
             Err(_) => Err(format!("{port} is not a port").into()),
         },
         ["browser"] => browser::find().map(|path| eprintln!("{}", path.display())),
+        ["fuzz"] => fuzz::run_all(600),
+        ["fuzz", seconds] => match seconds.parse() {
+            Ok(seconds) => fuzz::run_all(seconds),
+            Err(_) => Err(format!("{seconds} is not a number of seconds").into()),
+        },
         ["help"] => {
             eprintln!("{HELP}");
             Ok(())

@@ -6,15 +6,17 @@ use std::path::{Component, Path};
 
 use anyhow::{Context, anyhow};
 use ldwrap::attributes::MeshAttributes;
-use ldwrap::io::{Detail, MeshFormat, Model, read_model, read_model_as};
+use ldwrap::io::{Detail, Limits, MeshFormat, Model, ReadOptions, detect, read_model_with};
 use ldwrap::{CheckOptions, PolygonSoup, Progress, RepairReport, SurfaceMesh};
 
-use crate::args::{MeshArgs, MeshFormatArg, OnlyArg};
+use crate::args::{BoxArg, MeshArgs, MeshFormatArg, OnlyArg};
 
 /// A checked mesh and what had to be done to it.
 pub(crate) struct Input {
     /// What messages call it.
     pub(crate) name: String,
+    /// The format that content or name tell.
+    pub(crate) format: Option<MeshFormat>,
     /// As the file gives it.
     pub(crate) soup: PolygonSoup,
     pub(crate) mesh: SurfaceMesh,
@@ -38,14 +40,15 @@ pub(crate) fn read_detail(
     let stdin = args.mesh.as_os_str() == "-";
     let name = if stdin { "stdin".to_owned() } else { args.mesh.display().to_string() };
     progress.begin("read", 1);
-    let bytes = bytes(&args.mesh, stdin).with_context(|| name.clone())?;
+    let limits = args.reading.max_memory.map(Limits::for_memory).unwrap_or_default();
+    let bytes = bytes(&args.mesh, stdin, limits.bytes).with_context(|| name.clone())?;
     let folder = if stdin { None } else { args.mesh.parent() };
     let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
-    let model = match args.reading.mesh_format {
-        Some(format) => read_model_as(format.into(), &bytes, detail, &resolver),
-        None => read_model(&bytes, Some(&name), detail, &resolver),
-    };
-    let mut model = model.with_context(|| name.clone())?;
+    let reading =
+        ReadOptions { format: args.reading.mesh_format.map(Into::into), name: Some(&name), detail, limits };
+    let mut model = read_model_with(&bytes, &reading, &resolver).with_context(|| name.clone())?;
+    let detected = || detect(&bytes, Some(name.strip_suffix(".gz").unwrap_or(&name)));
+    let format = args.reading.mesh_format.map(MeshFormat::from).or_else(detected);
     if !only.is_empty() {
         select(&mut model, only).with_context(|| name.clone())?;
     }
@@ -54,7 +57,25 @@ pub(crate) fn read_detail(
     progress.begin("check", 1);
     let options = CheckOptions { turn_outward: !args.reading.keep_winding };
     let (mesh, repaired) = SurfaceMesh::from_soup(&soup, &options).with_context(|| name.clone())?;
-    Ok(Input { name, soup, mesh, repaired, attributes })
+    Ok(Input { name, format, soup, mesh, repaired, attributes })
+}
+
+impl Input {
+    /// Keeps what lies in a box.
+    pub(crate) fn clip(self, BoxArg(low, high): BoxArg) -> anyhow::Result<Self> {
+        let Self { name, format, soup, mesh, repaired, attributes } = self;
+        let mut model = Model { soup, attributes };
+        model
+            .clip(&mesh, (low, high))
+            .map_err(|error| anyhow!("{error}: give another --box"))
+            .with_context(|| name.clone())?;
+        let Model { soup, attributes } = model;
+        // What was turned stays turned; what was repaired is the file's.
+        let (mesh, _) = SurfaceMesh::from_soup(&soup, &CheckOptions { turn_outward: false })
+            .context("in the box")
+            .with_context(|| name.clone())?;
+        Ok(Self { name, format, soup, mesh, repaired, attributes })
+    }
 }
 
 /// Keeps the faces that have one of the names.
@@ -111,14 +132,27 @@ fn beside(folder: &Path, file: &str) -> Result<Vec<u8>, String> {
     fs::read(folder.join(file)).map_err(|error| format!("it cannot be read ({error})"))
 }
 
-fn bytes(path: &Path, stdin: bool) -> anyhow::Result<Vec<u8>> {
+/// The bytes of a file; of too many not more than show that it is too large.
+fn bytes(path: &Path, stdin: bool, most: u64) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
+    let too_large = || {
+        anyhow!(
+            "has more than {most} bytes, which is the limit; split the mesh, or raise the limit (--max-memory)"
+        )
+    };
     if stdin {
-        standard_input().lock().read_to_end(&mut bytes).context("cannot be read")?;
+        let input = standard_input().lock();
+        input.take(most.saturating_add(1)).read_to_end(&mut bytes).context("cannot be read")?;
+        if bytes.len() as u64 > most {
+            return Err(too_large());
+        }
     } else {
         let found = fs::metadata(path).context("cannot be opened")?;
         if found.is_dir() {
             return Err(anyhow!("is a folder; name a mesh file in it"));
+        }
+        if found.len() > most {
+            return Err(too_large());
         }
         bytes = fs::read(path).context("cannot be read")?;
     }

@@ -5,22 +5,98 @@ use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use glam::{DVec3, DVec4, Vec4Swizzles};
-use ldwrap::SurfacePoint;
 use ldwrap::attributes::Places;
 use ldwrap::density::Density;
 use ldwrap::io::Detail;
 use ldwrap::io::points::Attribute;
+use ldwrap::pipeline::{Options, Request, Run, run_weighted};
+use ldwrap::refine::{Refined, refine};
+use ldwrap::{Progress, Sample, SurfaceMesh, SurfacePoint, quota};
 
-use crate::args::{WeightsArgs, WeightsBy, WeightsOf};
+use crate::args::{PlacingArgs, WeightsArgs, WeightsBy, WeightsOf};
 use crate::input::Input;
+use crate::job::{self, Quota};
 
-/// The density that the arguments ask for on the mesh.
-pub(crate) fn density(args: &WeightsArgs, input: &Input) -> anyhow::Result<Density> {
-    if let Some(by) = &args.weights_by {
-        return by_attribute(by, input).with_context(|| input.name.clone());
+/// What points are placed on.
+pub(crate) struct Ground {
+    /// The mesh file, or the part of it that is asked for.
+    pub(crate) input: Input,
+    /// Its faces cut as finely as the weights vary.
+    refined: Option<Refined>,
+    /// How densely, on the fine faces.
+    pub(crate) density: Density,
+    /// How many points, and all else that decides them.
+    pub(crate) options: Options,
+    /// How many each connected component is to get, if that was asked for.
+    counts: Option<Vec<usize>>,
+}
+
+impl Ground {
+    /// The mesh that the stages run on.
+    pub(crate) fn mesh(&self) -> &SurfaceMesh {
+        self.refined.as_ref().map_or(&self.input.mesh, Refined::mesh)
     }
-    let Some(path) = &args.weights else { return Ok(Density::UNIFORM) };
-    read(args.weights_of, path, input).with_context(|| path.display().to_string())
+
+    /// Runs all stages.
+    pub(crate) fn run(&self, progress: &dyn Progress) -> anyhow::Result<Run> {
+        let run =
+            match &self.counts {
+                Some(counts) => quota::run(self.mesh(), &self.density, counts, &self.options, progress)
+                    .map_err(Into::into),
+                None => run_weighted(self.mesh(), &self.density, &self.options, progress)
+                    .map_err(anyhow::Error::from),
+            };
+        run.with_context(|| self.input.name.clone())
+    }
+
+    /// Samples on it as samples on the mesh of the input.
+    pub(crate) fn lifted(&self, samples: &[Sample]) -> Vec<Sample> {
+        let lift = |sample: &Sample| match &self.refined {
+            Some(refined) => Sample { point: refined.lift(&sample.point), ..*sample },
+            None => *sample,
+        };
+        samples.iter().map(lift).collect()
+    }
+}
+
+/// Finds the part of the mesh that is asked for, its weights, and what each connected component is to get.
+pub(crate) fn prepare(args: &PlacingArgs, input: Input, options: Options) -> anyhow::Result<Ground> {
+    let input = match args.inside {
+        Some(inside) => input.clip(inside)?,
+        None => input,
+    };
+    let WeightsArgs { weights, weights_of, weights_by } = &args.weights;
+    let (refined, density) = match (weights_by, weights) {
+        (Some(by), _) => by_attribute(by, &input).with_context(|| input.name.clone())?,
+        (None, Some(path)) => {
+            (None, read(*weights_of, path, &input).with_context(|| path.display().to_string())?)
+        }
+        (None, None) => (None, Density::UNIFORM),
+    };
+    let mut ground = Ground { input, refined, density, options, counts: None };
+    if let Some(quota) = job::quota(args) {
+        let counts = counts(quota, &ground)?;
+        ground.options.request = Request::Count(counts.iter().sum());
+        ground.counts = Some(counts);
+    }
+    Ok(ground)
+}
+
+/// How many points each connected component is to get.
+fn counts(quota: Quota, ground: &Ground) -> anyhow::Result<Vec<usize>> {
+    let (name, mesh, density) = (&ground.input.name, ground.mesh(), &ground.density);
+    let counts = match (quota, ground.options.request) {
+        (Quota::Each(count), _) => quota::each(mesh, density, count),
+        (Quota::AtLeast(least), Request::Count(count)) => {
+            quota::at_least(mesh, density, count, least).with_context(|| format!("{name}: --at-least"))?
+        }
+        (Quota::AtLeast(_), _) => return Err(anyhow!("{name}: --at-least needs a number of points")),
+    };
+    // Checked here, because sums must not overflow.
+    if counts.iter().fold(0_u64, |sum, &count| sum.saturating_add(count as u64)) > u64::from(u32::MAX) {
+        return Err(anyhow!("{name}: more than {} points are asked for: take a smaller number", u32::MAX));
+    }
+    Ok(counts)
 }
 
 /// How much of the mesh file must be read for the weights.
@@ -32,8 +108,14 @@ pub(crate) fn detail(args: &WeightsArgs) -> Detail {
     }
 }
 
-/// The values at the corners of the triangles.
-fn by_attribute(by: &WeightsBy, input: &Input) -> anyhow::Result<Density> {
+/// At most so many more faces are made so that weights can follow a texture.
+const MORE_FACES: usize = 1 << 18;
+
+/// Where weights are known, in texels of a texture.
+const RESOLUTION: f64 = 1.5;
+
+/// The values at the corners of the triangles; under a texture, of finer ones.
+fn by_attribute(by: &WeightsBy, input: &Input) -> anyhow::Result<(Option<Refined>, Density)> {
     let Input { mesh, attributes, .. } = input;
     let places = Places::new(mesh, attributes);
     let color = |point: &SurfacePoint| places.color(mesh, point).unwrap_or(DVec4::ZERO);
@@ -57,13 +139,11 @@ fn by_attribute(by: &WeightsBy, input: &Input) -> anyhow::Result<Density> {
         WeightsBy::Alpha => color(point).w,
         WeightsBy::Property(_) => number.and_then(|n| places.number(mesh, point, n)).unwrap_or(0.0),
     };
-    let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let weights: Vec<[f64; 3]> = mesh
-        .topology()
-        .face_ids()
-        .map(|face| corners.map(|barycentric| value(&SurfacePoint { face, barycentric })))
-        .collect();
-    Ok(Density::of_corners(mesh, &weights)?)
+    let has_texture = attributes.materials.iter().flatten().any(|material| material.texture.is_some());
+    let texels = |face| if has_texture { places.texels(mesh, face) } else { None };
+    let refined = refine(mesh, texels, RESOLUTION, mesh.face_count().saturating_add(MORE_FACES));
+    let density = refined.density(value)?;
+    Ok((Some(refined), density))
 }
 
 fn read(of: Option<WeightsOf>, path: &Path, input: &Input) -> anyhow::Result<Density> {

@@ -40,6 +40,12 @@ pub enum DensityError {
         /// Which of them, from 0.
         index: usize,
     },
+    /// A connected component is to get points, but has no weight.
+    #[error("connected component {component} is to get points, but has no weight")]
+    NoWeight {
+        /// Which, from 0.
+        component: usize,
+    },
     /// No place would get points.
     #[error("all weights of the surface are zero: no place would get points")]
     Zero,
@@ -244,6 +250,24 @@ mod tests {
         let middle = SurfacePoint { face: FaceId(1), barycentric: [0.5, 0.25, 0.25] };
         assert!((density.at(&middle) - 1.0).abs() < 1e-15);
         assert_eq!(Density::of_positions(&mesh, &soup, &[0.0, 0.0, 2.0, 2.0]), Ok(density));
+    }
+
+    #[test]
+    fn corners_by_hand() {
+        let (_, mesh) = square();
+        // Corners 0 and 2 lie on both triangles and need not agree: means 1 and 3 of areas of a half, so all is halved.
+        let density = Density::of_corners(&mesh, &[[0.0, 3.0, 0.0], [6.0, 0.0, 3.0]]).unwrap();
+        assert_eq!(density.face_masses(&mesh), [0.25, 0.75]);
+        assert_eq!(density.corners(FaceId(0)), [0.0, 1.5, 0.0]);
+        assert_eq!(density.at(&SurfacePoint { face: FaceId(1), barycentric: [0.5, 0.25, 0.25] }), 1.875);
+        // At the same place from the other side.
+        assert_eq!(density.at(&SurfacePoint { face: FaceId(0), barycentric: [0.5, 0.0, 0.5] }), 0.0);
+        assert_eq!(density.at(&SurfacePoint { face: FaceId(1), barycentric: [0.5, 0.5, 0.0] }), 1.5);
+        assert_eq!(density.largest(), 3.0);
+        let length = DensityError::Length { found: 3, expected: 6, elements: "corners" };
+        assert_eq!(Density::of_corners(&mesh, &[[1.0; 3]]), Err(length));
+        let refused = Density::of_corners(&mesh, &[[1.0; 3], [1.0, -1.0, 1.0]]).unwrap_err();
+        assert!(matches!(refused, DensityError::Weight { element: "corner", index: 4, .. }), "{refused}");
     }
 
     #[test]

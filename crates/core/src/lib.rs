@@ -18,11 +18,15 @@
 //! | [`equalize::equalize`] | [`SurfacePoint`]s of any origin | [`SurfacePoint`]s | beyond it |
 //!
 //! [`irregularity`] says how much of the surface lies beside torn borders (4.3). [`measure`] judges any points on a
-//! surface, whoever made them, and [`baseline`] makes others to compare with. [`shapes`] generates meshes, [`spatial`] answers
+//! surface, whoever made them, and [`baseline`] makes others to compare with. A [`density`] makes points denser in places,
+//! inside large faces after [`refine`]; [`quota`] gives each connected component its number of points; [`io::Model::clip`] keeps
+//! what lies in a box, [`io::Model::retain`] some polygons. [`shapes`] generates meshes, [`spatial`] answers
 //! what can be seen and what is nearest, and the readers and writers of `io` take and give bytes.
 //!
+//! The short path, with nothing to decide but the number of points, is [`sample`]; the long one keeps every value:
+//!
 //! ```
-//! use ldwrap::pipeline::{Options, Request, run};
+//! use ldwrap::pipeline::{Options, run};
 //! use ldwrap::shapes::Shape;
 //! use ldwrap::{CheckOptions, Silent, SurfaceMesh};
 //!
@@ -31,16 +35,15 @@
 //! assert!(repairs.is_clean());
 //!
 //! // Points: exactly as many as asked for.
-//! let options = Options { request: Request::Count(192), ..Options::default() };
+//! let options = Options { seed: 7, ..Options::for_count(192) };
 //! let run = run(&mesh, &options, &Silent)?;
 //! assert_eq!(run.samples.len(), 192);
 //!
 //! // What the stages made.
 //! assert_eq!(run.strips.strips.len(), 1);
 //! assert!(run.irregularity().exact <= 1.0);
-//! for sample in &run.samples {
-//!     let distance_from_middle = mesh.locate(&sample.point).length();
-//!     assert!((0.97..=1.0 + 1e-12).contains(&distance_from_middle));
+//! for place in run.places(&mesh) {
+//!     assert!((0.97..=1.0 + 1e-12).contains(&place.length()));
 //! }
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -48,8 +51,10 @@
 //! The same mesh, options and seed give the same bits on every run, with any number of threads, natively and in wasm.
 //! Errors arise where bytes become a mesh and where options cannot be met; a stage on a checked mesh does not fail.
 //!
-//! Features: `io` (default; one feature a format: `obj`, `gltf`, `ply`, `stl`, `csv`, `json`), `parallel` (default; uses
-//! every core), `serde`.
+//! Features: `io` (default; one feature a format: `obj`, `gltf`, `ply`, `stl`, `csv`,
+//! `json`, `npz`, `gz`, `textures`), `parallel` (default; uses
+//! every core; also called `rayon`), `serde` (options, reports and samples as data: fields that are left out have their
+//! default, unknown ones are refused). With none of them the library compiles for wasm.
 
 pub mod attributes;
 pub mod baseline;
@@ -70,13 +75,16 @@ pub mod pipeline;
 mod planted;
 mod progress;
 pub mod progressive;
+pub mod quota;
 mod random;
+pub mod refine;
 mod request;
 mod sample;
 pub mod segment;
 mod selection;
 pub mod sequence;
 mod shares;
+mod short;
 pub mod spatial;
 pub mod unfold;
 pub mod wrap;
@@ -87,6 +95,7 @@ pub use mesh::{
 };
 pub use progress::{Progress, Silent};
 pub use sample::{Origin, Sample, SurfacePoint};
+pub use short::sample;
 
 /// Runs the example of the README.
 #[cfg(all(doctest, feature = "io"))]

@@ -19,6 +19,8 @@ pub use crate::selection::{SampleOrder, Selection};
 
 /// Everything that decides the points, besides the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Options {
     /// How many points. Default: exactly 1,000.
     pub request: Request,
@@ -151,7 +153,10 @@ pub enum OptionsError {
     #[error(transparent)]
     Sequence(#[from] SequenceError),
     /// More points of the planar domain would be needed than memory is spent on.
-    #[error("{wanted:.3e} points of the planar domain are needed, which is too many: ask for fewer points")]
+    #[error(
+        "{wanted:.3e} points of the planar domain are needed, which is too many: ask for fewer points; parts far \
+         longer than wide need the most"
+    )]
     TooMany {
         /// How many.
         wanted: f64,
@@ -227,7 +232,7 @@ pub fn run_weighted(
         domain: &domain,
         sequence: options.sequence,
         shift: sequence::shift_of_seed(options.seed),
-        selection: options.selection,
+        choice: options.selection.choice(options.equalize.is_some()),
         tolerance,
     };
     let Scattered { samples, correction, d_m } = scattering.meet(options.request)?;

@@ -10,7 +10,7 @@ use crate::irregularity;
 use crate::mesh::SurfaceMesh;
 use crate::pipeline::OptionsError;
 use crate::sample::{Origin, Sample};
-use crate::selection::Selection;
+use crate::selection::Choice;
 use crate::sequence::{self, Sequence};
 use crate::shares::Regions;
 use crate::unfold::Strips;
@@ -39,7 +39,7 @@ pub(crate) struct Scattering<'a> {
     pub(crate) domain: &'a PlanarDomain,
     pub(crate) sequence: Sequence,
     pub(crate) shift: DVec2,
-    pub(crate) selection: Selection,
+    pub(crate) choice: Choice,
     /// In units of d_m.
     pub(crate) tolerance: f64,
 }
@@ -55,6 +55,10 @@ pub(crate) struct Scattered {
 /// How many points are caught for each that is wanted when the most central ones are chosen. More bring the errors down
 /// further (ball on the horse at n = 1,000: 0.26 at 1.5, 0.22 at 2, 0.21 at 3, 0.19 at 6) and cost as much more.
 const SURPLUS: f64 = 2.0;
+
+/// How many points are caught for each that is wanted when it does not matter which stay: so many that once is mostly
+/// enough.
+const ENOUGH: f64 = 1.1;
 
 /// With weights so many points of the domain, at most, are looked at to fill the densest places.
 const MOST_FOR_WEIGHTS: f64 = 4_194_304.0;
@@ -73,10 +77,11 @@ impl Scattering<'_> {
             Request::Count(0) => {
                 Err(OptionsError::OutOfRange { name: "count", value: "0".into(), allowed: "1 or more" })
             }
-            Request::Count(n) => match self.selection {
-                Selection::Regions => self.by_regions(n),
-                Selection::Sequence => self.along_sequence(n),
-                Selection::Extensible => self.first(n),
+            Request::Count(n) => match self.choice {
+                Choice::Regions => self.by_regions(n),
+                Choice::Sequence => self.along_sequence(n),
+                Choice::First => self.first(n),
+                Choice::Any => self.any(n),
             },
             Request::Density(density) => self.at_spacing(libm::sqrt(positive("density", density)?.recip())),
             Request::Spacing(spacing) => self.at_spacing(positive("spacing", spacing)?),
@@ -148,18 +153,30 @@ impl Scattering<'_> {
         low
     }
 
-    /// Exactly `n` points, the most central in each of as many regions of equal mass.
-    fn by_regions(&self, n: usize) -> Result<Scattered, OptionsError> {
-        let d_m = libm::sqrt(self.mesh.area() / n as f64);
-        let mut count = self.domain_count(n as f64 * SURPLUS * self.peak(n as f64 * SURPLUS));
-        let caught = loop {
+    /// At least `n` points: `surplus` times as many, or more where those do not catch enough.
+    fn at_least(&self, n: usize, d_m: f64, surplus: f64) -> Result<Vec<Corrected>, OptionsError> {
+        let wanted = n as f64 * surplus;
+        let mut count = self.domain_count(wanted * self.peak(wanted));
+        loop {
             let (mut caught, _) = self.scatter(count, d_m)?;
             caught.retain(|c| self.density.at(&c.sample.point) > 0.0);
             if caught.len() >= n {
-                break caught;
+                return Ok(caught);
             }
             count = count.saturating_mul(2);
-        };
+        }
+    }
+
+    /// Exactly `n` points, thinned out evenly along the sequence.
+    fn any(&self, n: usize) -> Result<Scattered, OptionsError> {
+        let d_m = libm::sqrt(self.mesh.area() / n as f64);
+        Ok(scattered(thin_out(self.at_least(n, d_m, ENOUGH)?, n), d_m))
+    }
+
+    /// Exactly `n` points, the most central in each of as many regions of equal mass.
+    fn by_regions(&self, n: usize) -> Result<Scattered, OptionsError> {
+        let d_m = libm::sqrt(self.mesh.area() / n as f64);
+        let caught = self.at_least(n, d_m, SURPLUS)?;
         let regions = Regions::new(self.mesh, self.density, n);
         Ok(scattered(regions.choose(self.mesh, caught), d_m))
     }

@@ -1,9 +1,15 @@
 //! Where a mesh comes from: a built-in shape, or the bytes of a person's file.
 
-use ldwrap::io::{ReadError, read_mesh};
+use ldwrap::io::{Limits, ReadError, ReadOptions, read_model_with};
 use ldwrap::shapes::Shape;
 use ldwrap::{CheckOptions, PolygonSoup, RepairReport, SurfaceMesh};
 use serde::{Deserialize, Serialize};
+
+/// The most that a file may take: in a page half of the 4 GiB that its memory can have, for a page that runs out of
+/// memory is gone without a word.
+fn limits() -> Limits {
+    if cfg!(target_arch = "wasm32") { Limits::for_memory(2 << 30) } else { Limits::default() }
+}
 
 /// A mesh to load.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,7 +55,8 @@ impl Source {
         let found = std::cell::RefCell::new(Vec::new());
         if name.to_lowercase().ends_with(".gltf") {
             // Only the reader knows what a document needs. What is wrong with it is told when it is loaded.
-            let _ = read_mesh(&bytes, Some(&name), &|address| {
+            let options = ReadOptions { name: Some(&name), limits: limits(), ..ReadOptions::default() };
+            let _ = read_model_with(&bytes, &options, &|address| {
                 let read = read_beside(folder, address);
                 found.borrow_mut().push((address.to_owned(), read.clone()));
                 read
@@ -100,13 +107,15 @@ fn read(name: &str, bytes: &[u8], beside: &Beside) -> Result<PolygonSoup, String
             None => Err("it was not found".to_owned()),
         },
     };
-    read_mesh(bytes, Some(name), &resolver).map_err(|error| match error {
+    let options = ReadOptions { name: Some(name), limits: limits(), ..ReadOptions::default() };
+    let model = read_model_with(bytes, &options, &resolver).map_err(|error| match error {
         ReadError::Missing { uri, .. } if *beside == Beside::OutOfReach => format!(
             "{name}: it needs {uri:?} too, but only one file can be opened here: save the mesh as GLB, one file with \
              everything in it"
         ),
         other => format!("{name}: {other}"),
-    })
+    })?;
+    Ok(model.soup)
 }
 
 /// Shapes are sent by their names.

@@ -15,8 +15,8 @@ use ldwrap::shapes::Shape;
 pub(crate) use batch::{BatchArgs, BatchOutputArgs, Shard};
 pub(crate) use judge::{BoundArgs, CompareArgs, MeasureArgs, PlanarSet, PlaneArgs, PointsOf};
 pub(crate) use wrap::{
-    AttributeArg, ForViewsArgs, OnlyArg, OrderArg, PlacingArgs, SelectArg, WeightsArgs, WeightsBy, WeightsOf,
-    WrapArgs, WrapOutputArgs,
+    AttributeArg, BoxArg, ForViewsArgs, OnlyArg, OrderArg, PlacingArgs, SelectArg, WeightsArgs, WeightsBy,
+    WeightsOf, WrapArgs, WrapOutputArgs,
 };
 
 /// Spreads low-discrepancy points over polygon meshes.
@@ -92,6 +92,10 @@ pub(crate) struct ReadingArgs {
     /// Leave components that are wound inward as they are, instead of turning them outward
     #[arg(long)]
     pub(crate) keep_winding: bool,
+    /// Refuse meshes, pictures and numbers of points that may need more memory than SIZE: bytes, or with K, M, G or T
+    /// behind the number [default: files of 16G, 268 million vertices]
+    #[arg(long, value_name = "SIZE", value_parser = size)]
+    pub(crate) max_memory: Option<u64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -120,6 +124,10 @@ pub(crate) struct RequestArgs {
     /// Make as many points as bring the irregularity ratio R (eq. 8) down to this
     #[arg(long, value_name = "R", value_parser = positive)]
     pub(crate) irregularity: Option<f64>,
+    /// Make exactly M points on each connected component of the mesh, large or small
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..),
+        conflicts_with_all = ["no_equalize", "for_views"])]
+    pub(crate) per_component: Option<u32>,
 }
 
 /// How the surface is cut.
@@ -282,6 +290,24 @@ fn point_formats() -> impl TypedValueParser<Value = PointFormat> {
 
 fn shapes() -> impl TypedValueParser<Value = Shape> {
     PossibleValuesParser::new(Shape::ALL.map(Shape::name)).try_map(|name| name.parse::<Shape>())
+}
+
+/// A number of bytes; K, M, G and T stand for powers of 1024.
+fn size(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let (number, shift) = match text.char_indices().last() {
+        Some((end, 'k' | 'K')) => (&text[..end], 10),
+        Some((end, 'm' | 'M')) => (&text[..end], 20),
+        Some((end, 'g' | 'G')) => (&text[..end], 30),
+        Some((end, 't' | 'T')) => (&text[..end], 40),
+        _ => (text, 0),
+    };
+    let number: u64 =
+        number.parse().map_err(|_| "must be a whole number of bytes, as 500M or 8G".to_owned())?;
+    number
+        .checked_mul(1 << shift)
+        .filter(|&bytes| bytes > 0)
+        .ok_or_else(|| "must be above 0 and below 16 million T".to_owned())
 }
 
 /// A number above 0.

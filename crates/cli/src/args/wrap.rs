@@ -42,6 +42,14 @@ pub(crate) struct PlacingArgs {
     /// Work on the faces of this material or part alone, as material:NAME or part:NAME; may be given several times
     #[arg(long, value_name = "WHAT", conflicts_with = "weights")]
     pub(crate) only: Vec<OnlyArg>,
+    /// Work on the surface inside this box alone: its smallest coordinates, then its largest, which may be -inf and inf.
+    /// Faces are cut exactly at its sides
+    #[arg(long = "box", value_name = "X,Y,Z,X,Y,Z", conflicts_with = "weights", allow_hyphen_values = true)]
+    pub(crate) inside: Option<BoxArg>,
+    /// Give each connected component at least M of the points; those with a larger share of the area give them
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..),
+        conflicts_with_all = ["density", "spacing", "irregularity", "per_component", "no_equalize", "for_views"])]
+    pub(crate) at_least: Option<u32>,
     #[command(flatten)]
     pub(crate) weights: WeightsArgs,
 }
@@ -162,6 +170,25 @@ impl FromStr for OnlyArg {
             Some(("material", name)) if !name.is_empty() => Ok(Self::Material(name.to_owned())),
             Some(("part", name)) if !name.is_empty() => Ok(Self::Part(name.to_owned())),
             _ => Err("must be material:NAME or part:NAME".to_owned()),
+        }
+    }
+}
+
+/// A box along the axes: the smallest and the largest coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BoxArg(pub(crate) DVec3, pub(crate) DVec3);
+
+impl FromStr for BoxArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse::<f64>()).collect();
+        match numbers.as_deref() {
+            Ok(&[a, b, c, x, y, z]) if a <= x && b <= y && c <= z => {
+                Ok(Self(DVec3::new(a, b, c), DVec3::new(x, y, z)))
+            }
+            Ok(&[_, _, _, _, _, _]) => Err("the three smallest coordinates come first".to_owned()),
+            _ => Err("six numbers with commas between are needed, such as 0,0,0,1,inf,2".to_owned()),
         }
     }
 }

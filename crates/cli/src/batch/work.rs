@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use ldwrap::io::ReadError;
 use ldwrap::measure::{EnergyOptions, EnergyPlanes};
-use ldwrap::pipeline::{self, Options, Run};
-use ldwrap::{MeshError, Progress, SurfaceMesh, SurfacePoint};
+use ldwrap::pipeline::Options;
+use ldwrap::{MeshError, Progress, Sample, SurfaceMesh, SurfacePoint};
 use sha2::{Digest, Sha256};
 
 use crate::args::{BatchArgs, MeshArgs};
@@ -102,17 +102,19 @@ impl<'a> Plan<'a> {
         let mesh = MeshArgs { mesh: path.to_path_buf(), reading: *reading };
         let input = input::read_detail(&mesh, job::detail(placing, &self.carried), &placing.only, stages)
             .map_err(|error| trouble(kind_of(&error, path))(error))?;
-        let density = weights::density(&placing.weights, &input).map_err(trouble(Kind::Options))?;
-        let run = pipeline::run_weighted(&input.mesh, &density, &self.options, stages)
-            .map_err(|error| trouble(Kind::Options)(error.into()))?;
+        job::points_fit(&self.options, input.mesh.area(), reading.max_memory)
+            .map_err(trouble(Kind::Options))?;
+        let ground = weights::prepare(placing, input, self.options).map_err(trouble(Kind::Options))?;
+        let run = ground.run(stages).map_err(trouble(Kind::Options))?;
+        let (input, samples) = (&ground.input, ground.lifted(&run.samples));
         stages.begin("write", 0);
         let wanted = PointOutput {
             destination: Destination::File(target.to_path_buf()),
             format: self.args.outputs.format,
             carried: self.carried.clone(),
         };
-        let bytes = points::bytes(&input, &run.samples, &wanted).map_err(trouble(Kind::Options))?;
-        let eta = self.args.outputs.eta.then(|| eta(&input.mesh, &run, stages));
+        let bytes = points::bytes(input, &samples, &wanted).map_err(trouble(Kind::Options))?;
+        let eta = self.args.outputs.eta.then(|| eta(&input.mesh, &samples, stages));
         stages.begin("write", 0);
         write(temporaries, target, &bytes).map_err(trouble(Kind::Write))?;
         let topology = input.mesh.topology();
@@ -159,7 +161,10 @@ fn fingerprint(args: &BatchArgs, options: &Options, carried: &Carried) -> anyhow
     });
     let weights = (weights.transpose()?, placing.weights.weights_of, &placing.weights.weights_by);
     let outputs = (args.outputs.format, carried, args.outputs.eta);
-    let all = format!("{:?}", (options, &args.reading, &placing.only, weights, outputs));
+    let all = format!(
+        "{:?}",
+        (options, job::quota(placing), placing.inside, &args.reading, &placing.only, weights, outputs)
+    );
     // 64 bits: nobody wants to make two sets of options look alike.
     const BYTES: usize = 8;
     Ok(Sha256::digest(all).iter().take(BYTES).map(|byte| format!("{byte:02x}")).collect())
@@ -184,8 +189,8 @@ fn message(error: &anyhow::Error, name: &str) -> String {
     text.strip_prefix(name).and_then(|rest| rest.strip_prefix(": ")).map_or(text.clone(), str::to_owned)
 }
 
-fn eta(mesh: &SurfaceMesh, run: &Run, progress: &dyn Progress) -> f64 {
-    let points: Vec<SurfacePoint> = run.samples.iter().map(|sample| sample.point).collect();
+fn eta(mesh: &SurfaceMesh, samples: &[Sample], progress: &dyn Progress) -> f64 {
+    let points: Vec<SurfacePoint> = samples.iter().map(|sample| sample.point).collect();
     let planes = EnergyPlanes::new(mesh, points.len(), &EnergyOptions::default(), progress);
     planes.measure(mesh, &points, progress).eta
 }

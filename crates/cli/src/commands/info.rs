@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use ldwrap::io::MeshFormat;
 use serde::Serialize;
 
 use crate::args::InfoArgs;
@@ -19,12 +20,15 @@ struct InfoReport<'a> {
     edges: usize,
     euler_characteristic: i64,
     bounds: [[f64; 3]; 2],
+    format: Option<MeshFormat>,
+    unit: Option<&'static str>,
+    up: Option<&'static str>,
 }
 
 /// Runs the command.
 pub(crate) fn run(args: &InfoArgs, quiet: bool) -> Outcome {
     let stages = Stages::new(quiet);
-    let Input { name, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
+    let Input { name, format, mesh, repaired, .. } = input::read(&args.mesh, &stages)?;
     stages.finish();
     let edges = mesh.topology().edge_count();
     let (low, high) = mesh.bounds();
@@ -34,6 +38,9 @@ pub(crate) fn run(args: &InfoArgs, quiet: bool) -> Outcome {
         edges,
         euler_characteristic: mesh.vertex_count() as i64 - edges as i64 + mesh.face_count() as i64,
         bounds: [low.to_array(), high.to_array()],
+        format,
+        unit: format.and_then(MeshFormat::unit),
+        up: format.and_then(MeshFormat::up_axis),
     };
     if args.json {
         write_stdout(&report::json(&report)?)?;
@@ -44,7 +51,7 @@ pub(crate) fn run(args: &InfoArgs, quiet: bool) -> Outcome {
 }
 
 fn text(name: &str, report: &InfoReport<'_>, notes: &[String]) -> String {
-    let InfoReport { mesh, edges, euler_characteristic, bounds: [low, high], .. } = report;
+    let InfoReport { mesh, edges, euler_characteristic, bounds: [low, high], format, unit, up, .. } = report;
     let mut text = format!("{name}\n");
     let mut line = |what: &str, value: String| {
         let _ = writeln!(text, "  {what:<12} {value}");
@@ -61,8 +68,19 @@ fn text(name: &str, report: &InfoReport<'_>, notes: &[String]) -> String {
     line("area", mesh.area.to_string());
     line("from", format!("{} {} {}", low[0], low[1], low[2]));
     line("to", format!("{} {} {}", high[0], high[1], high[2]));
+    line("units", units(*format, *unit, *up));
     for (i, note) in notes.iter().enumerate() {
         line(if i == 0 { "repaired" } else { "" }, note.clone());
     }
     text
+}
+
+/// What the coordinates mean, as far as the format says.
+fn units(format: Option<MeshFormat>, unit: Option<&str>, up: Option<&str>) -> String {
+    let what = match (format, unit, up) {
+        (Some(format), Some(unit), Some(up)) => format!("{unit}s, {up} up, as {format} prescribes"),
+        (Some(format), ..) => format!("{format} does not say, nor which axis is up"),
+        (None, ..) => "not known, nor which axis is up".to_owned(),
+    };
+    format!("{what}; coordinates are left as they are")
 }

@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
 use ldwrap::correct::Correction;
-use ldwrap::density::Density;
 use ldwrap::irregularity::Irregularity;
-use ldwrap::pipeline::{self, Options, Run};
+use ldwrap::pipeline::Run;
 use ldwrap::{Progress, SurfacePoint};
 
 use crate::args::WrapArgs;
@@ -20,7 +18,7 @@ use crate::points;
 use crate::progress::Stages;
 use crate::quality::Judge;
 use crate::report::{self, MeshReport, Report};
-use crate::weights;
+use crate::weights::{self, Ground};
 
 /// Runs the command.
 pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
@@ -33,12 +31,12 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    let density = weights::density(&placing.weights, &input)?;
-    let run = pipeline::run_weighted(&input.mesh, &density, &options, &stages)
-        .with_context(|| input.name.clone())?;
+    job::points_fit(&options, input.mesh.area(), args.mesh.reading.max_memory)?;
+    let ground = weights::prepare(placing, input, options)?;
+    let run = ground.run(&stages)?;
     stages.begin("irregularity", 0);
     let irregularity = run.irregularity();
-    let job = Job { input: &input, density: &density, options: &options, run: &run, irregularity };
+    let job = Job { ground: &ground, run: &run, irregularity };
     let files = write(job, &outputs, &stages)?;
     for line in summary(job) {
         stages.say(&line);
@@ -49,19 +47,19 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     Ok(())
 }
 
-/// What was asked for.
+/// What was done.
 #[derive(Clone, Copy)]
 struct Job<'a> {
-    input: &'a Input,
-    density: &'a Density,
-    options: &'a Options,
+    ground: &'a Ground,
     run: &'a Run,
     irregularity: Irregularity,
 }
 
 fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
-    let Job { input, density, options, run, irregularity } = job;
+    let Job { ground, run, irregularity } = job;
+    let Ground { input, density, options, .. } = ground;
     let Input { mesh, repaired, .. } = input;
+    let samples = ground.lifted(&run.samples);
     let mut outputs = Outputs::default();
     if wanted.strips.is_some() || wanted.preview.is_some() {
         stages.begin("draw", 0);
@@ -71,15 +69,15 @@ fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<
         outputs.stage(destination, svg.into_bytes())?;
     }
     if let Some(destination) = &wanted.preview {
-        outputs
-            .stage(destination, preview_png(mesh, &run.strips, &run.samples, &PreviewOptions::default()))?;
+        let preview = preview_png(ground.mesh(), &run.strips, &run.samples, &PreviewOptions::default());
+        outputs.stage(destination, preview)?;
     }
     if let Some(wanted) = &wanted.points {
         stages.begin("write", 0);
-        outputs.stage(&wanted.destination, points::bytes(input, &run.samples, wanted)?)?;
+        outputs.stage(&wanted.destination, points::bytes(input, &samples, wanted)?)?;
     }
     let quality = wanted.quality.then(|| {
-        let points: Vec<SurfacePoint> = run.samples.iter().map(|sample| sample.point).collect();
+        let points: Vec<SurfacePoint> = samples.iter().map(|sample| sample.point).collect();
         Judge::new(mesh, points.len(), stages).quality(&points, stages)
     });
     let seconds = stages.finish();
@@ -99,7 +97,7 @@ fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<
 }
 
 fn summary(job: Job<'_>) -> Vec<String> {
-    let Job { input: Input { name, mesh, .. }, run, irregularity, options: _, density: _ } = job;
+    let Job { ground: Ground { input: Input { name, mesh, .. }, .. }, run, irregularity } = job;
     let Irregularity { bound, refined, exact } = irregularity;
     let Correction { projected, removed } = run.correction;
     let count = run.samples.len();

@@ -167,6 +167,58 @@ fn weights_by_color_and_property() {
 }
 
 #[test]
+fn weights_follow_a_texture_inside_large_faces() {
+    // One quad under a picture of 32 x 32 texels, white but for a black disc.
+    let folder = Folder::new();
+    let size = 32_u32;
+    let from_middle = |x: f64, y: f64| ((x - 0.3).powi(2) + (y - 0.6).powi(2)).sqrt();
+    let is_black = |x: f64, y: f64| from_middle(x, y) < 0.25;
+    let mut texels = Vec::new();
+    for row in 0..size {
+        for column in 0..size {
+            let at = |index: u32| (f64::from(index) + 0.5) / f64::from(size);
+            texels.push(if is_black(at(column), 1.0 - at(row)) { 0 } else { 255 });
+        }
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size, size);
+    encoder.set_color(png::ColorType::Grayscale);
+    let mut writer = encoder.write_header().expect("a head");
+    writer.write_image_data(&texels).expect("texels");
+    writer.finish().expect("a picture");
+    folder.write("t.png", &bytes);
+    folder.write("m.mtl", "newmtl paint\nmap_Kd t.png\n");
+    folder.write(
+        "quad.obj",
+        "mtllib m.mtl\nusemtl paint\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+         f 1/1 2/2 3/3 4/4\n",
+    );
+    let wrap = "wrap quad.obj -n 800 -q -o p.csv --weights-by luminance --report r.json";
+    folder.run(&format!("{wrap} --attributes face,polygon,barycentric,uv,cell-area --preview p.png")).ok();
+    let text = folder.text("p.csv");
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|word| word.parse().expect("a number")).collect())
+        .collect();
+    assert_eq!(rows.len(), 800);
+    // The rim of the disc is grey, one texel wide.
+    let deep = rows.iter().filter(|row| from_middle(row[0], row[1]) < 0.21).count();
+    assert_eq!(deep, 0, "points in the black");
+    for row in &rows {
+        let &[x, y, _, face, polygon, .., u, v, area] = &row[..] else { panic!("{row:?}") };
+        // The faces are those of the file, two triangles, however finely they were cut.
+        assert!((face == 0.0 || face == 1.0) && polygon == 0.0, "{row:?}");
+        assert!((u - x).abs() < 1e-12 && (v - y).abs() < 1e-12 && area > 0.0, "{row:?}");
+    }
+    assert_eq!(folder.json("r.json")["mesh"]["faces"], 2);
+    // The white part is evenly covered: the right half, without the disc but for a sliver, has its share.
+    let right = rows.iter().filter(|row| row[0] > 0.55).count() as f64;
+    let due = 0.45 / (1.0 - std::f64::consts::PI * 0.0625) * 800.0;
+    assert!((right - due).abs() < 0.03 * due, "{right} of {due}");
+}
+
+#[test]
 fn what_is_not_there_is_said() {
     let folder = textured();
     folder.write("octahedron.obj", OCTAHEDRON);
@@ -216,36 +268,15 @@ fn compressed_meshes_and_wrong_names() {
     folder.run("info model.fbx").failed(&["this is FBX", "convert it to OBJ"]);
 }
 
-/// Runs only where the environment variable names a Python that has Open3D, trimesh and NumPy.
+/// Runs only where the environment variable names a Python that has NumPy, Open3D, trimesh and pymeshlab.
 #[test]
 fn other_programs_read_the_same() {
     let Some(python) = std::env::var_os("LDWRAP_PEERS_PYTHON") else {
-        eprintln!("skipped: LDWRAP_PEERS_PYTHON names no Python with open3d, trimesh and numpy");
+        eprintln!("skipped: LDWRAP_PEERS_PYTHON names no Python with numpy, open3d, trimesh and pymeshlab");
         return;
     };
-    let folder = textured();
-    for extension in ["csv", "ply", "npz", "glb"] {
-        folder.run(&format!("wrap square.obj -n 100 -q -o p.{extension} --attributes all")).ok();
-    }
-    let script = "
-import csv, numpy as np, open3d, trimesh
-rows = list(csv.DictReader(open('p.csv')))
-column = lambda *names: np.array([[float(row[n]) for n in names] for row in rows])
-xyz, normals, rgb = column('x', 'y', 'z'), column('nx', 'ny', 'nz'), column('red', 'green', 'blue')
-cloud = open3d.io.read_point_cloud('p.ply')
-assert np.array_equal(np.asarray(cloud.points), xyz)
-assert np.allclose(np.asarray(cloud.normals), normals, atol=1e-6)
-assert np.array_equal(np.round(np.asarray(cloud.colors) * 255), rgb)
-mesh = trimesh.load('p.ply')
-assert np.allclose(mesh.vertices, xyz) and np.array_equal(mesh.colors[:, :3], rgb)
-points = next(iter(trimesh.load('p.glb').geometry.values()))
-assert np.allclose(points.vertices, xyz, atol=1e-6)
-arrays = np.load('p.npz')
-assert np.array_equal(arrays['position'], xyz) and np.array_equal(arrays['color'][:, :3], rgb)
-assert list(arrays['material_names']) == ['paint']
-";
-    folder.write("check.py", script);
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/peers.py");
     let output =
-        Command::new(python).arg("check.py").current_dir(folder.path("")).output().expect("Python runs");
+        Command::new(python).args([script, env!("CARGO_BIN_EXE_ldwrap-cli")]).output().expect("Python runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

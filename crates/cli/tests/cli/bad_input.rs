@@ -74,7 +74,9 @@ fn a_buffer_outside_the_folder_is_not_read() {
     folder.write("out.bin", &bytes);
     folder.write("sub/in.bin", &bytes);
     folder.write("good.gltf", gltf("sub/in.bin"));
-    assert_eq!(folder.run("info good.gltf --json").ok().json()["faces"], 1);
+    let good = folder.run("info good.gltf --json").ok().json();
+    assert_eq!([&good["format"], &good["unit"], &good["up"]], ["gltf", "metre", "+Y"]);
+    assert_eq!(good["faces"], 1);
     folder.write("missing.gltf", gltf("sub/none.bin"));
     folder.run("info missing.gltf").failed(&["missing.gltf", "sub/none.bin"]);
     folder.write("sub/bad.gltf", gltf("../out.bin"));
@@ -137,4 +139,17 @@ fn a_header_that_promises_too_much() {
 #[test]
 fn quiet_still_tells_errors() {
     Folder::new().run("wrap horse.ply --quiet").failed(&["horse.ply"]);
+}
+
+#[test]
+fn more_than_the_memory_allowed() {
+    let folder = Folder::with_octahedron();
+    let run = |arguments: &str| folder.run(&format!("wrap octahedron.obj {arguments} -o p.xyz"));
+    run("-n 1000000 --max-memory 1G").failed(&["--max-memory", "fewer points", "--no-equalize"]);
+    run("-n 1000000 --no-equalize --max-memory 100M").failed(&["--max-memory", "fewer points"]);
+    run("-n 10 --max-memory 40").failed(&["octahedron.obj", "--max-memory"]);
+    run("-n 10 --max-memory 600").failed(&["octahedron.obj", "more than 4 vertices"]);
+    run("-n 10 --max-memory 1M").ok();
+    run("-n 10 --max-memory 1Q").refused(&["--max-memory"]);
+    run("-n 10 --max-memory 0").refused(&["--max-memory"]);
 }

@@ -7,6 +7,7 @@ mod common;
 mod compare;
 mod measure;
 mod outputs;
+mod parts;
 mod plane;
 mod repairs;
 mod shape;

@@ -54,3 +54,19 @@ fn wrong_use() {
     folder.run("shape cube -o missing/cube.ply").failed(&["missing/cube.ply", "no folder"]);
     assert!(folder.names().is_empty());
 }
+
+#[test]
+fn units_and_axes_are_stated_where_the_format_has_them() {
+    let folder = Folder::new();
+    folder.run("shape cube -q -o cube.stl").ok();
+    let told = folder.run("info cube.stl").ok();
+    assert!(
+        told.text().contains("STL does not say, nor which axis is up; coordinates are left"),
+        "{}",
+        told.text()
+    );
+    let json = folder.run("info cube.stl --json").ok().json();
+    assert_eq!(json["format"], "stl");
+    assert!(json["unit"].is_null() && json["up"].is_null(), "{json}");
+    folder.run("info cube.stl --mesh-format ply").failed(&["cube.stl"]);
+}

@@ -11,6 +11,7 @@
 
 mod color;
 mod corners;
+mod cut;
 mod place;
 #[cfg(all(test, feature = "io"))]
 mod tests;
@@ -18,6 +19,7 @@ mod texture;
 
 pub use color::{from_srgb, from_srgb8, to_srgb, to_srgb8};
 pub use corners::{CornerValues, PolygonNames};
+pub(crate) use cut::Piece;
 pub use place::Places;
 pub use texture::{Filter, Image, ImageError, Material, Texture, Tint, Wrap};
 
@@ -53,6 +55,11 @@ impl MeshAttributes {
         self.colors.select(corners);
         self.uv.iter_mut().for_each(|uv| uv.select(corners));
         self.numbers.iter_mut().for_each(|(_, numbers)| numbers.select(corners));
+        self.select_polygons(polygons);
+    }
+
+    /// Gives the polygons the names and numbers of these.
+    fn select_polygons(&mut self, polygons: &[usize]) {
         self.material_of.select(polygons);
         self.parts.select(polygons);
         let number = |&polygon: &usize| match &self.kept {

@@ -29,8 +29,14 @@ impl<'a> Places<'a> {
     /// 1998, doi:10.1080/10867651.1998.10487494). The normal of the face where the file leaves corners without, or
     /// where they cancel out. Components that the check turned outward have their normals turned too.
     pub fn normal(&self, mesh: &SurfaceMesh, point: &SurfacePoint) -> DVec3 {
+        let normal = self.mixed_normal(mesh, point);
+        normal.and_then(DVec3::try_normalize).unwrap_or_else(|| mesh.face_normal(point.face))
+    }
+
+    /// What lies between the normals of the corners, of any length; `None` where a corner has none.
+    pub(super) fn mixed_normal(&self, mesh: &SurfaceMesh, point: &SurfacePoint) -> Option<DVec3> {
         let source = &mesh.sources()[point.face.index()];
-        let normal = match &self.vertex_normals {
+        match &self.vertex_normals {
             Some(normals) => {
                 let [a, b, c] = mesh.topology().corners(point.face).map(|v| normals[v.index()]);
                 Some(triangle::at(a, b, c, point.barycentric))
@@ -39,8 +45,7 @@ impl<'a> Places<'a> {
                 let normal = self.attributes.normals.at(source.corners, point.barycentric);
                 normal.map(|n| if source.turned { -n } else { n })
             }
-        };
-        normal.and_then(DVec3::try_normalize).unwrap_or_else(|| mesh.face_normal(point.face))
+        }
     }
 
     /// The texture coordinates of the first set, origin at the lower left of the picture.
@@ -70,6 +75,21 @@ impl<'a> Places<'a> {
             (Tint::Multiply, Some(corners)) => Some(color * corners),
             (Tint::Replace, Some(corners)) => Some(if material.texture.is_some() { color } else { corners }),
         }
+    }
+
+    /// Where the corners of a face lie in the picture of its material, in texels from the upper left of the first repetition;
+    /// `None` where there is no picture or no texture coordinates.
+    pub fn texels(&self, mesh: &SurfaceMesh, face: FaceId) -> Option<[DVec2; 3]> {
+        let material = self.attributes.materials.get(self.material(mesh, face)?)?.as_ref()?;
+        let texture = material.texture.as_ref()?;
+        let (width, height) = self.attributes.images.get(texture.image)?.size();
+        let uv = self.attributes.uv.get(texture.uv_set)?;
+        let [a, b, c] = mesh.sources()[face.index()].corners.map(|corner| {
+            let uv = uv.get(corner)?;
+            let place = texture.transform.transform_point2(DVec2::new(uv.x, 1.0 - uv.y));
+            Some(place * DVec2::new(width.into(), height.into()))
+        });
+        Some([a?, b?, c?])
     }
 
     fn material_color(&self, mesh: &SurfaceMesh, point: &SurfacePoint, material: &Material) -> DVec4 {

@@ -135,6 +135,17 @@ fn textures_go_on_beyond_their_edges() {
 }
 
 #[test]
+fn pictures_go_on_by_their_own_rule_to_the_side_and_up() {
+    let mixed = read(&gltf(3.0, TEXTURE, r#""wrapS":33071,"wrapT":10497"#, "", &[]));
+    for (column, row) in [(0, 0), (1, 1), (3, 0)] {
+        let (x, y) = middle(column, row);
+        // In the second repetition to the side the last column goes on; in the third one down all is as in the first.
+        let at = ((x + 2.0) / 3.0, 1.0 - (1.0 - y + 2.0) / 3.0);
+        assert_eq!(mixed.color_at(at.0, at.1), texels()[row * 4 + 3]);
+    }
+}
+
+#[test]
 fn factor_and_vertex_colors_multiply_in_linear_light() {
     let factor = r#""baseColorFactor":[0.5,0.25,1.0,0.5],"baseColorTexture":{"index":0}"#;
     let colors = [[1.0, 0.5, 0.25]; 4].concat();
@@ -215,6 +226,95 @@ fn texels_of_an_obj_square() {
     files.insert("pictures/four by two.png", b"GIF89a".to_vec());
     let error = read_with(OBJ.as_bytes(), &files).err().expect("no picture").to_string();
     assert!(error.contains("save it as PNG or JPEG"), "{error}");
+}
+
+#[test]
+fn pictures_of_an_obj_repeat_or_are_clamped() {
+    let obj = OBJ.replace("vt 1 0", "vt 3 0").replace("vt 1 1", "vt 3 3").replace("vt 0 1", "vt 0 3");
+    let with = |option: &str| {
+        let mtl = format!("newmtl paint\nmap_Kd {option} t.png\nnewmtl plain\n");
+        let files = BTreeMap::from([("a b.mtl", mtl.into_bytes()), ("t.png", png(4, &texels()))]);
+        read_with(obj.as_bytes(), &files).expect("a model")
+    };
+    let (repeat, clamp) = (with(""), with("-clamp on"));
+    for (column, row) in [(0, 0), (2, 1), (3, 0)] {
+        // In the third repetition to the right, the second up.
+        let (x, y) = middle(column, row);
+        let at = ((x + 4.0) / 3.0, (y + 1.0) / 3.0);
+        assert_eq!(repeat.color_at(at.0, at.1), texels()[row * 4 + column]);
+        assert_eq!(clamp.color_at(at.0, at.1), texels()[3], "the upper right corner goes on");
+    }
+}
+
+#[test]
+fn a_jpeg_picture_has_its_colors_to_rounding() {
+    let color = [200, 100, 40];
+    let picture = image::RgbImage::from_pixel(16, 16, image::Rgb(color));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, image::ImageFormat::Jpeg).expect("a JPEG");
+    let files = BTreeMap::from([
+        ("a b.mtl", b"newmtl paint\nmap_Kd t.jpg\nnewmtl plain\n".to_vec()),
+        ("t.jpg", bytes.into_inner()),
+    ]);
+    let found = read_with(OBJ.as_bytes(), &files).expect("a model").color_at(0.7, 0.3);
+    assert!((0..3).all(|i| found[i].abs_diff(color[i]) <= 2) && found[3] == 255, "{found:?}");
+}
+
+/// The square of 2 x 1 with all its numbers as small integers (`KHR_mesh_quantization`): positions in halves, set right by
+/// the node; normals and texture coordinates normalized.
+fn quantized(required: &str) -> Vec<u8> {
+    let base64 = |bytes: &[u8]| base64::engine::general_purpose::STANDARD.encode(bytes);
+    let mut bytes: Vec<u8> = [[100u16, 7, 3, 0], [104, 7, 3, 0], [104, 9, 3, 0], [100, 9, 3, 0]]
+        .as_flattened()
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
+    bytes.extend([[0i8, 76, 102, 0]; 4].as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+    bytes.extend([[0u8, 255, 0, 0], [255, 255, 0, 0], [255, 0, 0, 0], [0, 0, 0, 0]].concat());
+    bytes.extend([0u16, 1, 2, 0, 2, 3].iter().flat_map(|i| i.to_le_bytes()));
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"extensionsUsed":[{required}],"extensionsRequired":[{required}],
+        "nodes":[{{"mesh":0,"scale":[0.5,0.5,0.5],"translation":[-50,-3.5,-1.5]}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}},"indices":3,"material":0}}]}}],
+        "materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}],
+        "textures":[{{"source":0}}],"images":[{{"uri":"data:image/png;base64,{}"}}],
+        "accessors":[
+          {{"bufferView":0,"componentType":5123,"count":4,"type":"VEC3","min":[100,7,3],"max":[104,9,3]}},
+          {{"bufferView":1,"componentType":5120,"normalized":true,"count":4,"type":"VEC3"}},
+          {{"bufferView":2,"componentType":5121,"normalized":true,"count":4,"type":"VEC2"}},
+          {{"bufferView":3,"componentType":5123,"count":6,"type":"SCALAR"}}],
+        "bufferViews":[{{"buffer":0,"byteLength":32,"byteStride":8}},{{"buffer":0,"byteOffset":32,"byteLength":16,"byteStride":4}},
+          {{"buffer":0,"byteOffset":48,"byteLength":16,"byteStride":4}},{{"buffer":0,"byteOffset":64,"byteLength":12}}],
+        "buffers":[{{"byteLength":{},"uri":"data:;base64,{}"}}]}}"#,
+        base64(&png(4, &texels())),
+        bytes.len(),
+        base64(&bytes),
+    )
+    .into_bytes()
+}
+
+#[test]
+fn a_quantized_square_is_the_square() {
+    let square = read(&quantized(r#""KHR_mesh_quantization""#));
+    assert_eq!(square.mesh.bounds(), (DVec3::ZERO, DVec3::new(2.0, 1.0, 0.0)));
+    for (index, texel) in texels().into_iter().enumerate() {
+        let (x, y) = middle(index % 4, index / 4);
+        assert_eq!(square.color_at(x, y), texel, "texel {index}");
+    }
+    let point = square.point(DVec3::new(0.7, 0.3, 0.0));
+    let places = Places::new(&square.mesh, &square.attributes);
+    assert!(places.normal(&square.mesh, &point).distance(DVec3::new(0.0, 76.0, 102.0).normalize()) < 1e-12);
+    assert!(places.uv(&square.mesh, &point).expect("coordinates").distance(DVec2::new(0.35, 0.3)) < 1e-12);
+}
+
+#[test]
+fn compressed_scenes_are_refused_by_name() {
+    for extension in ["EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_meshopt_compression"] {
+        let bytes = quantized(&format!(r#""KHR_mesh_quantization","{extension}""#));
+        let error = read_with(&bytes, &BTreeMap::new()).err().expect("it is compressed");
+        let ReadError::Unsupported { what, advice, .. } = &error else { panic!("{error}") };
+        assert!(what.contains(extension) && advice.contains("export it without compression"), "{error}");
+    }
 }
 
 #[test]

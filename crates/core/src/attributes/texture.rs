@@ -97,9 +97,12 @@ pub struct Image {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageError {
-    /// They are not a PNG or JPEG file, or a damaged one, or larger than the limit.
+    /// They are not a PNG or JPEG file, or a damaged one, or one with very long sides.
     #[error("{0}")]
     Unreadable(String),
+    /// It has more texels than there may be.
+    #[error("the picture has more texels than the limit")]
+    TooLarge,
     /// The reader of pictures was left out of this build.
     #[error("this build reads no textures: build ldwrap with the feature of that name")]
     Disabled,
@@ -131,12 +134,27 @@ impl Image {
     /// # Errors
     /// [`ImageError`].
     pub fn decode(bytes: &[u8]) -> Result<Self, ImageError> {
+        Self::decode_within(bytes, u64::MAX)
+    }
+
+    /// As [`decode`](Self::decode); pictures of more than `most` texels are refused before memory is taken for them.
+    ///
+    /// # Errors
+    /// [`ImageError`].
+    pub fn decode_within(bytes: &[u8], most: u64) -> Result<Self, ImageError> {
         #[cfg(feature = "textures")]
         {
             let unreadable = |error: image::ImageError| ImageError::Unreadable(error.to_string());
-            let mut reader = image::ImageReader::new(std::io::Cursor::new(bytes))
-                .with_guessed_format()
-                .map_err(|error| ImageError::Unreadable(error.to_string()))?;
+            let reader = || {
+                image::ImageReader::new(std::io::Cursor::new(bytes))
+                    .with_guessed_format()
+                    .map_err(|error| ImageError::Unreadable(error.to_string()))
+            };
+            let (width, height) = reader()?.into_dimensions().map_err(unreadable)?;
+            if u64::from(width) * u64::from(height) > most {
+                return Err(ImageError::TooLarge);
+            }
+            let mut reader = reader()?;
             let mut limits = image::Limits::default();
             limits.max_image_width = Some(LARGEST.0);
             limits.max_image_height = Some(LARGEST.0);
@@ -151,7 +169,7 @@ impl Image {
         }
         #[cfg(not(feature = "textures"))]
         {
-            let _ = bytes;
+            let _ = (bytes, most);
             Err(ImageError::Disabled)
         }
     }

@@ -44,6 +44,7 @@ pub use views::{Cameras, ForViews};
 /// How points are equalized.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct EqualizeOptions {
     /// Rounds of relaxation. More come closer to equal cells; the time is proportional. Default: 5.
     pub rounds: u32,

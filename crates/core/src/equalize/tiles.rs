@@ -43,8 +43,12 @@ pub(super) struct Scale<'a> {
     pub(super) middle: DVec3,
 }
 
-/// No side of a tile is longer than this many distances of the points there.
+/// No side of a tile is longer than this many distances of the points there, but for needles: see [`MOST`].
 const LONGEST: f64 = 1.0;
+
+/// A face is cut into about this many tiles at most, and as many more for each point that is due on it: a needle 1e12 times
+/// as long as wide would make millions. No face shorter than 32 distances of the points comes near it.
+const MOST: f64 = 64.0;
 
 /// Where few points are due, tiles and normals are scaled as if this share of the mean density were.
 const SPARSEST: f64 = 0.1;
@@ -104,7 +108,7 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
             };
             cut.split(
                 whole,
-                LONGEST * distance,
+                longest_side(whole.map(|c| c.place.position), distance),
                 &mut |corners: [Corner; 3]| {
                     let [a, b, c] = corners.map(|c| c.place.position);
                     let area = triangle::area(a, b, c);
@@ -164,6 +168,14 @@ struct Corner {
     id: u32,
     place: Place,
     density: f64,
+}
+
+/// How long the sides of a face's tiles may be.
+fn longest_side([a, b, c]: [DVec3; 3], distance: f64) -> f64 {
+    let length = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let due = triangle::area(a, b, c) / (distance * distance);
+    // Halving makes tiles half as long as they may be.
+    (LONGEST * distance).max(2.0 * length / (MOST * (1.0 + due)))
 }
 
 impl Cut {

@@ -22,7 +22,7 @@ use crate::spatial::{Camera, Caster};
 /// From where the surface will be looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 pub enum Cameras {
     /// From everywhere: half the cameras orthographic, half perspective at 1.3 to 4 radii of the sphere around the
     /// box of the mesh.
@@ -41,6 +41,7 @@ pub enum Cameras {
 /// How points are placed for views.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct ForViews {
     /// From where the surface will be looked at. Default: from everywhere.
     pub cameras: Cameras,

@@ -32,6 +32,9 @@ pub fn triangle_holds(a: DVec2, b: DVec2, c: DVec2, p: DVec2) -> bool {
     is_left_half_open(a, b, p) && is_left_half_open(b, c, p) && is_left_half_open(c, a, p)
 }
 
+/// A triangle of less than this part of the square over its longest side is a needle: 2e-6 times as high as long.
+const NEEDLE: f64 = 1e-6;
+
 /// Barycentric coordinates of `p` in the triangle, clamped to it (never negative, sum 1).
 /// A triangle without area gives its first corner.
 pub fn barycentric(a: DVec2, b: DVec2, c: DVec2, p: DVec2) -> [f64; 3] {
@@ -40,9 +43,32 @@ pub fn barycentric(a: DVec2, b: DVec2, c: DVec2, p: DVec2) -> [f64; 3] {
     if area == 0.0 {
         return [1.0, 0.0, 0.0];
     }
+    let longest = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared());
+    if area.abs() < NEEDLE * longest {
+        return in_needle([a, b, c], p);
+    }
     let v = (ap.perp_dot(ac) / area).clamp(0.0, 1.0);
     let w = (ab.perp_dot(ap) / area).clamp(0.0, 1.0 - v);
     [1.0 - v - w, v, w]
+}
+
+/// As [`barycentric`], where areas have no digits left: the place along the longest side counts, and rounding moves `p`
+/// across it alone, by less than the height.
+fn in_needle(corners: [DVec2; 3], p: DVec2) -> [f64; 3] {
+    let length = |i: usize| corners[i].distance_squared(corners[(i + 1) % 3]);
+    let first = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j))).unwrap_or(0);
+    let [from, to, apex] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
+    let (side, up, at) = (to - from, apex - from, p - from);
+    let squared = side.length_squared();
+    let height = side.perp_dot(up);
+    let high = if height == 0.0 { 0.0 } else { (side.perp_dot(at) / height).clamp(0.0, 1.0) };
+    let along = (at.dot(side) - high * up.dot(side)) / squared;
+    let far = along.clamp(0.0, 1.0 - high);
+    let mut weights = [0.0; 3];
+    weights[first] = 1.0 - high - far;
+    weights[(first + 1) % 3] = far;
+    weights[(first + 2) % 3] = high;
+    weights
 }
 
 /// How far along the segment `a b` (0 to 1) its point nearest to `p` lies.
@@ -57,4 +83,31 @@ pub fn nearest_on_segment(a: DVec2, b: DVec2, p: DVec2) -> f64 {
 #[inline]
 pub fn segment_distance(a: DVec2, b: DVec2, p: DVec2) -> f64 {
     p.distance(a + (b - a) * nearest_on_segment(a, b, p))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A place on a needle is found again along it to 1e-9 of its length, whatever its corners are called.
+    #[test]
+    fn barycentric_coordinates_of_needles() {
+        for exponent in 0..16 {
+            let long = DVec2::new(0.6, 0.8) * libm::exp10(f64::from(exponent));
+            let corners = [DVec2::ZERO, long, long * 0.25 + DVec2::new(-0.8, 0.6)];
+            for first in 0..3 {
+                let [a, b, c] = [0, 1, 2].map(|i| corners[(first + i) % 3]);
+                for weights in
+                    [[0.25, 0.25, 0.5], [0.125, 0.875, 0.0], [0.0, 0.5, 0.5], [0.5, 0.46875, 0.03125]]
+                {
+                    let place = |w: [f64; 3]| a * w[0] + b * w[1] + c * w[2];
+                    let found = barycentric(a, b, c, place(weights));
+                    assert!(found.iter().all(|w| (0.0..=1.0).contains(w)), "{found:?}");
+                    assert!((found.iter().sum::<f64>() - 1.0).abs() <= 1e-15, "{found:?}");
+                    let off = place(found).distance(place(weights));
+                    assert!(off <= 1e-9 * long.length() + 1e-15, "1e{exponent}: {off:e}");
+                }
+            }
+        }
+    }
 }

@@ -33,9 +33,43 @@ pub fn flatten(a: DVec3, b: DVec3, c: DVec3) -> (f64, f64, f64) {
     (length, ac.dot(ab) / length, ab.cross(ac).length() / length)
 }
 
+/// A triangle whose doubled area is less than this part of the square over its longest side is a needle.
+const NEEDLE: f64 = 1e-6;
+
 /// The barycentric coordinates of the point of the triangle nearest to `p` (Ericson, Real-Time Collision
-/// Detection, 2005, section 5.1.5); never negative, sum 1.
+/// Detection, 2005, section 5.1.5); never negative, sum 1. In needles, a million times as long as high or longer, where
+/// areas have no digits left, at most their height from the nearest one.
 pub fn nearest(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> [f64; 3] {
+    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    if area_vector(a, b, c).length_squared() < (NEEDLE * longest) * (NEEDLE * longest) {
+        return nearest_in_needle([a, b, c], p);
+    }
+    nearest_inside(a, b, c, p)
+}
+
+/// The nearest on a side, or what areas say, whichever is nearer.
+fn nearest_in_needle(corners: [DVec3; 3], p: DVec3) -> [f64; 3] {
+    let [a, b, c] = corners;
+    let [_, v, w] = nearest_inside(a, b, c, p);
+    let v = v.clamp(0.0, 1.0);
+    let w = w.clamp(0.0, 1.0 - v);
+    let mut best = [1.0 - v - w, v, w];
+    let distance = |weights| at(a, b, c, weights).distance_squared(p);
+    for first in 0..3 {
+        let (from, side) = (corners[first], corners[(first + 1) % 3] - corners[first]);
+        let squared = side.length_squared();
+        let along = if squared == 0.0 { 0.0 } else { ((p - from).dot(side) / squared).clamp(0.0, 1.0) };
+        let mut weights = [0.0; 3];
+        weights[first] = 1.0 - along;
+        weights[(first + 1) % 3] = along;
+        if distance(weights) < distance(best) {
+            best = weights;
+        }
+    }
+    best
+}
+
+fn nearest_inside(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> [f64; 3] {
     let ab = b - a;
     let ac = c - a;
     let ap = p - a;
@@ -75,4 +109,27 @@ pub fn nearest(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> [f64; 3] {
     let v = vb / sum;
     let w = vc / sum;
     [(1.0 - v - w).max(0.0), v, w]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point on a needle is found again, to its height.
+    #[test]
+    fn nearest_on_needles() {
+        for exponent in 0..14 {
+            let aspect = libm::exp10(f64::from(exponent));
+            let [a, b, c] =
+                [DVec3::ZERO, DVec3::new(0.8, -0.36, -0.48), DVec3::new(0.6, 0.48, 0.64) * aspect];
+            for weights in [[0.25, 0.25, 0.5], [0.0, 0.125, 0.875], [0.5, 0.0, 0.5], [0.03125, 0.46875, 0.5]]
+            {
+                let p = at(a, b, c, weights);
+                let found = nearest(a, b, c, p);
+                assert!(found.iter().all(|w| (0.0..=1.0).contains(w)), "{found:?}");
+                let off = at(a, b, c, found).distance(p);
+                assert!(off <= 1.0, "{aspect:e}: {off:e}");
+            }
+        }
+    }
 }

@@ -38,6 +38,18 @@ impl MeshFormat {
             _ => None,
         }
     }
+
+    /// The unit of length that the format prescribes: metres in glTF (section 3.4 of its specification). The others say
+    /// nothing. Readers leave coordinates alone.
+    pub fn unit(self) -> Option<&'static str> {
+        (self == Self::Gltf).then_some("metre")
+    }
+
+    /// The axis that points up by the rules of the format: +Y in glTF (section 3.4). The others say nothing. Readers leave
+    /// coordinates alone.
+    pub fn up_axis(self) -> Option<&'static str> {
+        (self == Self::Gltf).then_some("+Y")
+    }
 }
 
 impl fmt::Display for MeshFormat {

@@ -12,13 +12,11 @@ use gltf::mesh::{Mode, Primitive};
 use gltf::{Document, Gltf, Node, Semantic};
 
 use crate::io::detect::MeshFormat;
+use crate::io::limits::Limits;
 use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon};
 use crate::mesh::PolygonSoup;
 use attributes::Collector;
 use buffers::Buffers;
-
-/// How many vertices and corners a scene may have: a few bytes can ask for the same mesh a million times.
-const LARGEST: usize = 1 << 28;
 
 /// Extensions that may be required because they do not change the shape, or are understood.
 const HARMLESS: [&str; 7] = [
@@ -51,19 +49,29 @@ pub fn read(bytes: &[u8], resolver: &Resolver<'_>) -> Result<PolygonSoup, ReadEr
 /// # Errors
 /// [`ReadError`]: with the part of the document.
 pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Result<Model, ReadError> {
+    read_within(bytes, detail, &Limits::default(), resolver)
+}
+
+/// A few bytes can ask for the same mesh a million times: every copy is held against the limits before it is made.
+pub(super) fn read_within(
+    bytes: &[u8],
+    detail: Detail,
+    limits: &Limits,
+    resolver: &Resolver<'_>,
+) -> Result<Model, ReadError> {
     let (document, blob) = parse(bytes)?;
     let buffers = Buffers::load(&document, blob, resolver)?;
     let mut soup = PolygonSoup::default();
-    let mut collector = (detail >= Detail::Attributes).then(Collector::default);
+    let mut collector = (detail >= Detail::Attributes).then(|| Collector::new(limits));
     for_each_mesh(&document, |node, mesh, transform| {
         if let Some(collector) = &mut collector {
             collector.enter(node, mesh, transform);
         }
-        add_mesh(&mut soup, collector.as_mut(), mesh, transform, &buffers)
+        add_mesh(&mut soup, collector.as_mut(), mesh, transform, &buffers, limits)
     })?;
     let (mut attributes, materials) = collector.map(Collector::finish).unwrap_or_default();
     if detail >= Detail::Textures {
-        material::load(&document, &materials, &mut attributes, &buffers, resolver)?;
+        material::load(&document, &materials, &mut attributes, &buffers, limits, resolver)?;
     }
     Ok(Model { soup, attributes })
 }
@@ -72,21 +80,16 @@ pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Resu
 ///
 /// # Errors
 /// As [`read`].
+#[cfg(feature = "io")]
 pub(crate) fn vertices(bytes: &[u8], resolver: &Resolver<'_>) -> Result<Vec<DVec3>, ReadError> {
     let (document, blob) = parse(bytes)?;
     let buffers = Buffers::load(&document, blob, resolver)?;
     let mut vertices = Vec::new();
+    let limits = Limits::default();
     for_each_mesh(&document, |_, mesh, transform| {
         let place = Place::Item("mesh", mesh.index());
         for positions in mesh.primitives().filter_map(|primitive| primitive.get(&Semantic::Positions)) {
-            if positions.count() > LARGEST - vertices.len() {
-                return Err(ReadError::TooLarge {
-                    format: MeshFormat::Gltf,
-                    place,
-                    what: "vertices",
-                    limit: LARGEST,
-                });
-            }
+            limits.vertices(MeshFormat::Gltf, place, positions.count().saturating_add(vertices.len()))?;
             let local = accessor::vectors(&positions, "positions", &buffers)
                 .map_err(|problem| malformed(place, problem))?;
             vertices.extend(local.into_iter().map(|p| transform.transform_point3(DVec3::from_array(p))));
@@ -125,6 +128,7 @@ fn for_each_mesh(
 /// The checked document and the binary chunk.
 fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
     use gltf::json::validation::{Error, Validate};
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     if bytes.starts_with(b"glTF") {
         let length = bytes.get(8..12).map(|l| u32::from_le_bytes([l[0], l[1], l[2], l[3]]) as usize);
         if length.is_none_or(|length| length < 20 || length > bytes.len()) {
@@ -135,7 +139,6 @@ fn parse(bytes: &[u8]) -> Result<(Document, Option<Vec<u8>>), ReadError> {
             });
         }
     }
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes)
         .map_err(|error| malformed(Place::File, brief(&error.to_string())))?;
     let root = document.as_json();
@@ -205,6 +208,7 @@ fn add_mesh(
     mesh: &gltf::Mesh<'_>,
     transform: DAffine3,
     buffers: &Buffers,
+    limits: &Limits,
 ) -> Result<(), ReadError> {
     let turned = transform.matrix3.determinant() < 0.0;
     // Primitives may share their positions; each accessor is added once.
@@ -213,15 +217,12 @@ fn add_mesh(
         let place = Place::Item("mesh", mesh.index());
         let kept = matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan);
         let Some(positions) = primitive.get(&Semantic::Positions).filter(|_| kept) else { continue };
-        let too_large = |what| ReadError::TooLarge { format: MeshFormat::Gltf, place, what, limit: LARGEST };
         let count = positions.count();
         let first = match first_vertex.get(&positions.index()) {
             Some(&first) => first,
             None => {
                 let first = soup.positions.len();
-                if count > LARGEST - first {
-                    return Err(too_large("vertices"));
-                }
+                limits.vertices(MeshFormat::Gltf, place, count.saturating_add(first))?;
                 let local = accessor::vectors(&positions, "positions", buffers)
                     .map_err(|problem| malformed(place, problem))?;
                 let local = local.into_iter().map(DVec3::from_array);
@@ -245,9 +246,10 @@ fn add_mesh(
             }
             None => (0..count as u32).collect(),
         };
-        if indices.len().saturating_mul(3) > LARGEST - soup.corners.len().min(LARGEST) {
-            return Err(too_large("corners"));
-        }
+        // In strips and fans every corner but two makes a triangle.
+        let each = if primitive.mode() == Mode::Triangles { 1 } else { 3 };
+        let corners = indices.len().saturating_mul(each).saturating_add(soup.corners.len());
+        limits.corners(MeshFormat::Gltf, place, corners)?;
         let polygons = soup.polygon_count();
         if let Some(collector) = collector.as_deref_mut() {
             collector.begin(&primitive, count, buffers).map_err(|problem| malformed(place, problem))?;
@@ -257,7 +259,7 @@ fn add_mesh(
             if let Some(collector) = collector.as_deref_mut() {
                 collector.triangle(soup.corners.len(), triangle);
             }
-            push_polygon(soup, triangle.map(|index| index + first as u32), MeshFormat::Gltf)?;
+            push_polygon(soup, triangle.map(|index| index + first as u32), MeshFormat::Gltf, limits)?;
         }
         if let Some(collector) = collector.as_deref_mut() {
             collector.end(polygons..soup.polygon_count());

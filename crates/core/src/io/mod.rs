@@ -1,8 +1,10 @@
 //! Readers and writers: bytes in, bytes out, one file a format.
 
+mod clip;
 mod detect;
 #[cfg(feature = "gltf")]
 pub mod gltf;
+mod limits;
 #[cfg(feature = "io")]
 pub mod mesh_out;
 #[cfg(feature = "obj")]
@@ -17,5 +19,10 @@ mod select;
 #[cfg(feature = "stl")]
 pub mod stl;
 
+pub use clip::ClipError;
 pub use detect::{MeshFormat, detect};
-pub use read::{Detail, Model, Place, ReadError, Resolver, read_mesh, read_model, read_model_as};
+pub use limits::Limits;
+pub use read::{
+    Detail, Model, Place, ReadError, ReadOptions, Resolver, read_mesh, read_model, read_model_as,
+    read_model_with,
+};

@@ -9,6 +9,7 @@ use glam::DVec3;
 use tobj::{LoadError, LoadOptions};
 
 use crate::io::detect::MeshFormat;
+use crate::io::limits::Limits;
 use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
@@ -18,7 +19,7 @@ use crate::mesh::PolygonSoup;
 /// # Errors
 /// [`ReadError`]: with the line.
 pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
-    read_text(&text(bytes))
+    read_text(&text(bytes), &Limits::default())
 }
 
 /// Reads an OBJ file with the normals (`vn`), texture coordinates (`vt`) and colours (three sRGB numbers from 0 to 1
@@ -29,19 +30,30 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
 /// # Errors
 /// [`ReadError`]: with the line; a material library or picture that the resolver does not have.
 pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Result<Model, ReadError> {
+    read_within(bytes, detail, &Limits::default(), resolver)
+}
+
+pub(super) fn read_within(
+    bytes: &[u8],
+    detail: Detail,
+    limits: &Limits,
+    resolver: &Resolver<'_>,
+) -> Result<Model, ReadError> {
     let text = text(bytes);
-    let mut model = Model::from(read_text(&text)?);
+    let mut model = Model::from(read_text(&text, limits)?);
     if detail >= Detail::Attributes {
         let libraries = attributes::read(&text, &mut model)?;
         if detail >= Detail::Textures {
-            material::load(&libraries, &mut model.attributes, resolver)?;
+            material::load(&libraries, &mut model.attributes, limits, resolver)?;
         }
     }
     Ok(model)
 }
 
-fn read_text(text: &str) -> Result<PolygonSoup, ReadError> {
-    let plain = plain(text);
+fn read_text(text: &str, limits: &Limits) -> Result<PolygonSoup, ReadError> {
+    let (plain, vertices) = plain(text);
+    limits.vertices(MeshFormat::Obj, Place::File, vertices)?;
+    let plain = behind_all(vertices, plain);
     let mut lines = LineCounter { rest: plain.as_bytes(), line: 0 };
     let options = LoadOptions { triangulate: false, ..LoadOptions::default() };
     let (models, _) = tobj::load_obj_buf(&mut lines, &options, |_| Err(LoadError::GenericFailure))
@@ -58,21 +70,20 @@ fn read_text(text: &str) -> Result<PolygonSoup, ReadError> {
         let all_vertices = arities.next().unwrap_or_default();
         corners.by_ref().take(all_vertices as usize).for_each(drop);
         for arity in arities {
-            push_polygon(&mut soup, corners.by_ref().take(arity as usize), MeshFormat::Obj)?;
+            push_polygon(&mut soup, corners.by_ref().take(arity as usize), MeshFormat::Obj, limits)?;
         }
     }
     Ok(soup)
 }
 
-/// The same lines with nothing but positions and corners, behind a face of all vertices. The library stops at what
-/// is none of our business: colours at some of the vertices, comments behind a face, materials without a name; it
-/// takes polylines for faces; and it renumbers the vertices as faces use them, which the first face makes the order
-/// of the file.
-fn plain(text: &str) -> String {
+/// The same lines with nothing but positions and corners, and how many vertices there are. The library stops at what
+/// is none of our business: colours at some of the vertices, comments behind a face, materials without a name; and it
+/// takes polylines for faces.
+fn plain(text: &str) -> (String, usize) {
     let mut plain = String::with_capacity(2 * text.len());
     let mut vertices = 0;
     for_each_statement(text, |statement, line_breaks| {
-        let mut words = statement.split('#').next().unwrap_or_default().split_ascii_whitespace();
+        let mut words = statement.split('#').next().unwrap_or_default().split_whitespace();
         match words.next() {
             Some("v") => {
                 vertices += 1;
@@ -94,11 +105,14 @@ fn plain(text: &str) -> String {
         }
         plain.extend(std::iter::repeat_n('\n', line_breaks));
     });
-    let mut all: String =
-        (1..=vertices).fold("f".into(), |all, vertex: usize| all + " " + &vertex.to_string());
-    all.push('\n');
-    plain.insert_str(0, &all);
-    plain
+    (plain, vertices)
+}
+
+/// The lines behind a face of all vertices: the library renumbers the vertices as faces use them, which makes this the
+/// order of the file.
+fn behind_all(vertices: usize, plain: String) -> String {
+    let all: String = (1..=vertices).fold("f".into(), |all, vertex: usize| all + " " + &vertex.to_string());
+    all + "\n" + &plain
 }
 
 /// Calls `f` with every line, and how many lines of the file it takes: those that end in `\` go on in the next.
@@ -171,7 +185,7 @@ fn out_of_bounds(plain: &str) -> (Place, String) {
     let mut before = 0;
     for (line, text) in plain.lines().enumerate().skip(1) {
         before += usize::from(text.starts_with('v'));
-        for word in text.split_ascii_whitespace().skip(1).filter(|_| text.starts_with('f')) {
+        for word in text.split_whitespace().skip(1).filter(|_| text.starts_with('f')) {
             let index: i64 = word.parse().unwrap_or(0);
             let vertex = if index < 0 { before as i64 + index } else { index - 1 };
             if !(0..total as i64).contains(&vertex) {
@@ -201,6 +215,22 @@ mod tests {
         let latin = [&b"# \xe9\xff\n"[..], text.as_bytes()].concat();
         assert_eq!(read(&latin).unwrap(), soup);
         assert_eq!(read(text.replace('\n', "\r\n").as_bytes()).unwrap(), soup);
+    }
+
+    /// Found by fuzzing: polygons and what belongs to them were told apart by different white space.
+    #[test]
+    fn attributes_keep_pace_with_the_polygons() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf\u{c}1 \u{b} 2 3\nusemtl b\n\u{a0}f 1 2 3\n\u{b}f 1 2 3\nf 3 2 1\n\
+                    f#1 2 3\nusemtl c\nf 2 1 3\n";
+        let model = read_model(text.as_bytes(), Detail::Attributes, &|_| Err(String::new())).unwrap();
+        let materials = &model.attributes.material_of;
+        let of: Vec<_> = (0..model.soup.polygon_count())
+            .map(|p| (model.soup.polygon(p).len(), materials.get(p).map(|m| &*materials.names()[m])))
+            .collect();
+        assert_eq!(
+            of,
+            [(3, Some("a")), (3, Some("b")), (3, Some("b")), (3, Some("b")), (0, Some("b")), (3, Some("c"))]
+        );
     }
 
     #[test]

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 use crate::attributes::{CornerValues, MeshAttributes, from_srgb};
 use crate::io::detect::MeshFormat;
+use crate::io::limits::Limits;
 use crate::io::read::{Detail, Model, Place, ReadError, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
@@ -23,6 +24,10 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
 /// # Errors
 /// As [`read`].
 pub fn read_model(bytes: &[u8], detail: Detail) -> Result<Model, ReadError> {
+    read_within(bytes, detail, &Limits::default())
+}
+
+pub(super) fn read_within(bytes: &[u8], detail: Detail, limits: &Limits) -> Result<Model, ReadError> {
     let text = text(bytes);
     let mut lines = Lines { lines: text.lines().enumerate(), last: 0 };
     let (mut place, mut line) = lines.next("the head")?;
@@ -49,6 +54,8 @@ pub fn read_model(bytes: &[u8], detail: Detail) -> Result<Model, ReadError> {
     let vertex_count: usize = number(&mut numbers, place, "the number of vertices")?;
     let face_count: usize = number(&mut numbers, place, "the number of faces")?;
 
+    limits.vertices(MeshFormat::Off, place, vertex_count)?;
+
     let mut soup = PolygonSoup::default();
     // The counts are only believed as far as there are bytes: a line is at least as long as `0 0 0`.
     soup.positions.reserve(vertex_count.min(bytes.len() / 6));
@@ -70,7 +77,7 @@ pub fn read_model(bytes: &[u8], detail: Detail) -> Result<Model, ReadError> {
         for _ in 0..count {
             corners.push(number(&mut numbers, place, "a corner")?);
         }
-        push_polygon(&mut soup, corners.iter().copied(), MeshFormat::Off)?;
+        push_polygon(&mut soup, corners.iter().copied(), MeshFormat::Off, limits)?;
     }
     let attributes = columns.finish(&soup.corners);
     Ok(Model { soup, attributes })

@@ -13,6 +13,7 @@ use ply_rs_bw::ply::{
 
 use crate::attributes::MeshAttributes;
 use crate::io::detect::MeshFormat;
+use crate::io::limits::Limits;
 use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon};
 use crate::mesh::PolygonSoup;
 use attributes::{Face, Faces, Record};
@@ -36,6 +37,15 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
 /// # Errors
 /// As [`read`]; a picture that the resolver does not have.
 pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Result<Model, ReadError> {
+    read_within(bytes, detail, &Limits::default(), resolver)
+}
+
+pub(super) fn read_within(
+    bytes: &[u8],
+    detail: Detail,
+    limits: &Limits,
+    resolver: &Resolver<'_>,
+) -> Result<Model, ReadError> {
     let (header, start) = read_header(bytes)?;
     let mut reader = Reader::new(&bytes[start..]);
     let mut soup = PolygonSoup::default();
@@ -43,10 +53,11 @@ pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Resu
     let (mut vertices, mut face_values) = (Vec::<Record>::new(), Faces::default());
     for element in header.elements.values() {
         check_count(element, &header, reader.get_ref().len())?;
-        let error = |error| explain(error, &header, header_lines);
+        let error = |error| explain(error, &header, bytes, header_lines);
         match element.name.as_str() {
             "vertex" => {
                 require(element, &["x", "y", "z"], |kind| matches!(kind, PropertyType::Scalar(_)))?;
+                limits.vertices(MeshFormat::Ply, Place::File, element.count)?;
                 if detail >= Detail::Attributes {
                     let parser = Parser::<Record>::new();
                     vertices =
@@ -65,19 +76,19 @@ pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Resu
                     let parser = Parser::<Face>::new();
                     let faces =
                         parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
-                    face_values.add(element, &faces, &mut soup)?;
+                    face_values.add(element, &faces, &mut soup, limits)?;
                     continue;
                 }
                 let parser = Parser::<Corners>::new();
                 let faces = parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
-                add_faces(&mut soup, faces.iter().map(|face| &face.0[..]))?;
+                add_faces(&mut soup, faces.iter().map(|face| &face.0[..]), limits)?;
             }
             "tristrips" => {
                 require_corners(element)?;
                 let parser = Parser::<Corners>::new();
                 let strips = parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
                 for (index, strip) in strips.iter().enumerate() {
-                    add_strip(&mut soup, index, &strip.0)?;
+                    add_strip(&mut soup, index, &strip.0, limits)?;
                 }
             }
             // Binary elements without properties take no bytes, however many there are.
@@ -93,7 +104,7 @@ pub fn read_model(bytes: &[u8], detail: Detail, resolver: &Resolver<'_>) -> Resu
         attributes::collect(&header, &vertices, face_values, &soup, &mut found);
     }
     if detail >= Detail::Textures {
-        attributes::texture(&header, &soup, &mut found, resolver)?;
+        attributes::texture(&header, &soup, &mut found, limits, resolver)?;
     }
     Ok(Model { soup, attributes: found })
 }
@@ -177,6 +188,7 @@ fn require_corners(element: &ElementDef) -> Result<(), ReadError> {
 fn add_faces<'a>(
     soup: &mut PolygonSoup,
     faces: impl ExactSizeIterator<Item = &'a [i64]>,
+    limits: &Limits,
 ) -> Result<(), ReadError> {
     soup.ends.reserve(faces.len());
     soup.corners.reserve(faces.len().saturating_mul(3));
@@ -184,13 +196,13 @@ fn add_faces<'a>(
         if let Some(&corner) = face.iter().find(|&&corner| u32::try_from(corner).is_err()) {
             return Err(malformed(Place::Item("face", index), format!("a corner is vertex {corner}")));
         }
-        push_polygon(soup, face.iter().map(|&corner| corner as u32), MeshFormat::Ply)?;
+        push_polygon(soup, face.iter().map(|&corner| corner as u32), MeshFormat::Ply, limits)?;
     }
     Ok(())
 }
 
 /// Every corner of a strip makes a triangle with the two before it, turned every second time; -1 starts anew.
-fn add_strip(soup: &mut PolygonSoup, index: usize, strip: &[i64]) -> Result<(), ReadError> {
+fn add_strip(soup: &mut PolygonSoup, index: usize, strip: &[i64], limits: &Limits) -> Result<(), ReadError> {
     for run in strip.split(|&corner| corner == -1) {
         for (i, triangle) in run.windows(3).enumerate() {
             let [a, b, c] =
@@ -201,7 +213,7 @@ fn add_strip(soup: &mut PolygonSoup, index: usize, strip: &[i64]) -> Result<(), 
             };
             // Strips are sewn together by triangles with a repeated corner.
             if a != b && b != c && c != a {
-                push_polygon(soup, [a, b, c], MeshFormat::Ply)?;
+                push_polygon(soup, [a, b, c], MeshFormat::Ply, limits)?;
             }
         }
     }
@@ -213,7 +225,7 @@ fn malformed(place: Place, problem: String) -> ReadError {
 }
 
 /// The library's message without the data that it quotes.
-fn first_line(error: &ParseError) -> String {
+pub(super) fn first_line(error: &ParseError) -> String {
     let message = error.to_string();
     let start =
         message.split_once(": ").filter(|(head, _)| head.starts_with("Line ")).map_or(&*message, |m| m.1);
@@ -222,17 +234,30 @@ fn first_line(error: &ParseError) -> String {
     format!("{} {}", line(start), line(cause)).trim_end().to_string()
 }
 
-fn explain(error: ParseError, header: &Header, header_lines: usize) -> ReadError {
-    let (format, problem) = (MeshFormat::Ply, first_line(&error));
+fn explain(error: ParseError, header: &Header, bytes: &[u8], header_lines: usize) -> ReadError {
+    let (format, mut problem) = (MeshFormat::Ply, first_line(&error));
     let place = match (header.encoding, error.line()) {
-        // The library counts on from 1 behind the header.
-        (Encoding::Ascii, Some(line)) => Place::Line(header_lines + line),
+        (Encoding::Ascii, Some(line)) => {
+            // The library counts on from 1 behind the header.
+            let line = header_lines + line;
+            if let Some(word) = wrong_word(bytes, line) {
+                problem = format!("{:?} stands where a finite number must be", brief(&word));
+            }
+            Place::Line(line)
+        }
         _ => Place::File,
     };
     match error.kind() {
         ErrorKind::UnexpectedEof => ReadError::Truncated { format, place, problem },
         _ => ReadError::Malformed { format, place, problem },
     }
+}
+
+/// The first word of a line, counted from 1, that is no finite number: the library does not say which it is.
+fn wrong_word(bytes: &[u8], line: usize) -> Option<String> {
+    let text = String::from_utf8_lossy(bytes.split(|&byte| byte == b'\n').nth(line.checked_sub(1)?)?);
+    let mut words = text.split_ascii_whitespace();
+    words.find(|word| !word.parse::<f64>().is_ok_and(f64::is_finite)).map(str::to_owned)
 }
 
 /// An element that is passed over.

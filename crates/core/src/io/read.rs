@@ -4,7 +4,10 @@ use std::borrow::Cow;
 use std::fmt;
 
 use crate::attributes::MeshAttributes;
+#[cfg(any(feature = "obj", feature = "gltf", feature = "ply"))]
+use crate::attributes::{Image, ImageError};
 use crate::io::detect::{MeshFormat, detect};
+use crate::io::limits::Limits;
 use crate::mesh::PolygonSoup;
 
 /// Fetches what a mesh file names beside itself (buffers and pictures of a `.gltf`, materials and pictures of an `.obj`),
@@ -105,8 +108,11 @@ pub enum ReadError {
         /// What the resolver said.
         reason: String,
     },
-    /// More than can be counted or held.
-    #[error("{format}, {place}: more than {limit} {what}; split the mesh")]
+    /// More than the [`Limits`] allow.
+    #[error(
+        "{format}, {place}: more than {limit} {what}, which is the limit; split the mesh, or raise the limit \
+         (`--max-memory` of the program, `Limits` of the library)"
+    )]
     TooLarge {
         /// The format.
         format: MeshFormat,
@@ -115,7 +121,19 @@ pub enum ReadError {
         /// Of what there is too much.
         what: &'static str,
         /// How many there may be.
-        limit: usize,
+        limit: u64,
+    },
+    /// More than can be numbered.
+    #[error("{format}, {place}: more than {most} {what} cannot be numbered; split the mesh")]
+    TooMany {
+        /// The format.
+        format: MeshFormat,
+        /// Where.
+        place: Place,
+        /// Of what there is too much.
+        what: &'static str,
+        /// How many there may be.
+        most: u32,
     },
 }
 
@@ -170,12 +188,7 @@ pub fn read_model(
     detail: Detail,
     resolver: &Resolver<'_>,
 ) -> Result<Model, ReadError> {
-    let bytes = unpacked(bytes)?;
-    let name = name.map(|name| name.strip_suffix(".gz").unwrap_or(name));
-    match detect(&bytes, name) {
-        Some(format) => read_model_as(format, &bytes, detail, resolver),
-        None => Err(foreign(&bytes)),
-    }
+    read_model_with(bytes, &ReadOptions { name, detail, ..ReadOptions::default() }, resolver)
 }
 
 /// Reads a mesh in a known format, also compressed with gzip; see [`read_model`].
@@ -188,20 +201,53 @@ pub fn read_model_as(
     detail: Detail,
     resolver: &Resolver<'_>,
 ) -> Result<Model, ReadError> {
-    let bytes = unpacked(bytes)?;
+    read_model_with(bytes, &ReadOptions { format: Some(format), detail, ..ReadOptions::default() }, resolver)
+}
+
+/// How a file is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions<'a> {
+    /// The format. Default: `None`; the content tells it, and the name where the content does not.
+    pub format: Option<MeshFormat>,
+    /// The name of the file. Default: `None`.
+    pub name: Option<&'a str>,
+    /// How much is read. Default: the shape.
+    pub detail: Detail,
+    /// The most that reading may take.
+    pub limits: Limits,
+}
+
+/// Reads a mesh, also compressed with gzip; see [`read_model`].
+///
+/// # Errors
+/// [`ReadError`].
+pub fn read_model_with(
+    bytes: &[u8],
+    options: &ReadOptions<'_>,
+    resolver: &Resolver<'_>,
+) -> Result<Model, ReadError> {
+    let ReadOptions { format, name, detail, limits } = *options;
+    let bytes = unpacked(bytes, limits.bytes)?;
+    let name = name.map(|name| name.strip_suffix(".gz").unwrap_or(name));
+    let Some(format) = format.or_else(|| detect(&bytes, name)) else { return Err(foreign(&bytes)) };
+    if bytes.len() as u64 > limits.bytes {
+        let (place, what) = (Place::File, "bytes");
+        return Err(ReadError::TooLarge { format, place, what, limit: limits.bytes });
+    }
+    let limits = &limits;
     match format {
         #[cfg(feature = "obj")]
-        MeshFormat::Obj => crate::io::obj::read_model(&bytes, detail, resolver),
+        MeshFormat::Obj => crate::io::obj::read_within(&bytes, detail, limits, resolver),
         #[cfg(feature = "gltf")]
-        MeshFormat::Gltf => crate::io::gltf::read_model(&bytes, detail, resolver),
+        MeshFormat::Gltf => crate::io::gltf::read_within(&bytes, detail, limits, resolver),
         #[cfg(feature = "ply")]
-        MeshFormat::Ply => crate::io::ply::read_model(&bytes, detail, resolver),
+        MeshFormat::Ply => crate::io::ply::read_within(&bytes, detail, limits, resolver),
         #[cfg(feature = "stl")]
-        MeshFormat::Stl => crate::io::stl::read_model(&bytes, detail),
-        MeshFormat::Off => crate::io::off::read_model(&bytes, detail),
+        MeshFormat::Stl => crate::io::stl::read_within(&bytes, detail, limits),
+        MeshFormat::Off => crate::io::off::read_within(&bytes, detail, limits),
         #[allow(unreachable_patterns)]
         format => {
-            let _ = (resolver, detail);
+            let _ = (resolver, detail, limits);
             Err(ReadError::Disabled { format })
         }
     }
@@ -232,35 +278,44 @@ fn foreign(bytes: &[u8]) -> ReadError {
     }
 }
 
-/// The most bytes that a compressed file may unpack to: a few bytes can unpack to a thousand times as many.
-#[cfg(feature = "gz")]
-const MOST_UNPACKED: u64 = if usize::BITS < 64 { 1 << 30 } else { 1 << 34 };
+/// How files start that are compressed with gzip.
+const GZIP: &[u8] = &[0x1f, 0x8b, 8];
 
-/// The bytes without the compression of gzip, if they have it.
-fn unpacked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, ReadError> {
-    if !bytes.starts_with(&[0x1f, 0x8b, 8]) {
+/// The bytes without the compression of gzip, if they have it. A few bytes can unpack to a thousand times as many, so
+/// unpacking ends behind `most`.
+fn unpacked(bytes: &[u8], most: u64) -> Result<Cow<'_, [u8]>, ReadError> {
+    if !bytes.starts_with(GZIP) {
         return Ok(Cow::Borrowed(bytes));
     }
     #[cfg(feature = "gz")]
     {
         use std::io::Read;
         let mut unpacked = Vec::new();
-        flate2::read::MultiGzDecoder::new(bytes).take(MOST_UNPACKED + 1).read_to_end(&mut unpacked).map_err(
-            |error| ReadError::Compressed {
+        flate2::read::MultiGzDecoder::new(bytes)
+            .take(most.saturating_add(1))
+            .read_to_end(&mut unpacked)
+            .map_err(|error| ReadError::Compressed {
                 problem: format!(
                     "{}; the file is damaged or was cut off: copy it again",
                     brief(&error.to_string())
                 ),
-            },
-        )?;
-        if unpacked.len() as u64 > MOST_UNPACKED {
-            let problem = format!("it holds more than {MOST_UNPACKED} bytes; unpack it, and split the mesh");
+            })?;
+        if unpacked.len() as u64 > most {
+            let problem = format!(
+                "it holds more than {most} bytes, which is the limit; split the mesh, or raise the limit \
+                 (`--max-memory` of the program, `Limits` of the library)"
+            );
+            return Err(ReadError::Compressed { problem });
+        }
+        if unpacked.starts_with(GZIP) {
+            let problem = "it is compressed twice; unpack it once".to_owned();
             return Err(ReadError::Compressed { problem });
         }
         Ok(Cow::Owned(unpacked))
     }
     #[cfg(not(feature = "gz"))]
     {
+        let _ = most;
         let problem =
             "this build unpacks nothing; build ldwrap with the feature gz, or unpack the file first";
         Err(ReadError::Compressed { problem: problem.to_owned() })
@@ -275,7 +330,7 @@ pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
 
 /// The start of what a file or a library says, on one line, for messages.
 pub(super) fn brief(text: &str) -> String {
-    const LONGEST: usize = 100;
+    const LONGEST: usize = 160;
     let mut brief: String =
         text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if brief.len() < text.len() {
@@ -284,19 +339,59 @@ pub(super) fn brief(text: &str) -> String {
     brief
 }
 
-/// Appends a polygon as long as 32 bits can count the corners.
+/// Appends a polygon as long as the limits allow the corners, and 32 bits can count them.
 pub(super) fn push_polygon(
     soup: &mut PolygonSoup,
     corners: impl IntoIterator<Item = u32>,
     format: MeshFormat,
+    limits: &Limits,
 ) -> Result<(), ReadError> {
     soup.corners.extend(corners);
-    let end = u32::try_from(soup.corners.len()).map_err(|_| ReadError::TooLarge {
+    let place = Place::Item("face", soup.ends.len());
+    limits.corners(format, place, soup.corners.len())?;
+    let end = u32::try_from(soup.corners.len()).map_err(|_| ReadError::TooMany {
         format,
-        place: Place::Item("face", soup.ends.len()),
+        place,
         what: "corners",
-        limit: u32::MAX as usize,
+        most: u32::MAX,
     })?;
     soup.ends.push(end);
     Ok(())
+}
+
+/// A picture that a mesh file names.
+#[cfg(any(feature = "obj", feature = "gltf", feature = "ply"))]
+pub(super) struct Picture<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) format: MeshFormat,
+    /// Where the file names it.
+    pub(super) place: Place,
+    /// What messages call it.
+    pub(super) called: String,
+    /// What to do if it cannot be read.
+    pub(super) advice: &'static str,
+}
+
+#[cfg(any(feature = "obj", feature = "gltf", feature = "ply"))]
+impl Picture<'_> {
+    /// Adds it to the others; gives its index.
+    pub(super) fn decode(self, attributes: &mut MeshAttributes, limits: &Limits) -> Result<usize, ReadError> {
+        let Self { bytes, format, place, called, advice } = self;
+        let texels = |image: &Image| u64::from(image.size().0) * u64::from(image.size().1);
+        let taken: u64 = attributes.images.iter().map(texels).sum();
+        let image =
+            Image::decode_within(bytes, limits.texels.saturating_sub(taken)).map_err(
+                |error| match error {
+                    ImageError::TooLarge => {
+                        ReadError::TooLarge { format, place, what: "texels", limit: limits.texels }
+                    }
+                    error => {
+                        let what = format!("{called} ({})", brief(&error.to_string()));
+                        ReadError::Unsupported { format, place, what, advice }
+                    }
+                },
+            )?;
+        attributes.images.push(image);
+        Ok(attributes.images.len() - 1)
+    }
 }

@@ -5,6 +5,7 @@ use std::io::{Cursor, ErrorKind};
 use glam::DVec3;
 
 use crate::io::detect::{MeshFormat, binary_stl_count, binary_stl_size};
+use crate::io::limits::Limits;
 use crate::io::read::{Detail, Model, Place, ReadError, brief, push_polygon, text};
 use crate::mesh::PolygonSoup;
 
@@ -13,7 +14,11 @@ use crate::mesh::PolygonSoup;
 /// # Errors
 /// As [`read`].
 pub fn read_model(bytes: &[u8], detail: Detail) -> Result<Model, ReadError> {
-    let mut model = Model::from(read(bytes)?);
+    read_within(bytes, detail, &Limits::default())
+}
+
+pub(super) fn read_within(bytes: &[u8], detail: Detail, limits: &Limits) -> Result<Model, ReadError> {
+    let mut model = Model::from(read_shape(bytes, limits)?);
     if detail >= Detail::Attributes && is_ascii(bytes) {
         let (mut polygon, mut name) = (0, None);
         for line in text(bytes).lines() {
@@ -47,11 +52,15 @@ fn is_ascii(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`ReadError`]: with the triangle.
 pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
+    read_shape(bytes, &Limits::default())
+}
+
+fn read_shape(bytes: &[u8], limits: &Limits) -> Result<PolygonSoup, ReadError> {
     let size = binary_stl_count(bytes).map(binary_stl_size);
     let mut soup = PolygonSoup::default();
     if is_ascii(bytes) {
         for solid in solids(&text(bytes)) {
-            append(&mut soup, solid.as_bytes())?;
+            append(&mut soup, solid.as_bytes(), limits)?;
         }
         return Ok(soup);
     }
@@ -76,9 +85,9 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
         // The library takes every file with this start for text.
         let mut copy = bytes.to_vec();
         copy[0] = b'b';
-        append(&mut soup, &copy)?;
+        append(&mut soup, &copy, limits)?;
     } else {
-        append(&mut soup, bytes)?;
+        append(&mut soup, bytes, limits)?;
     }
     Ok(soup)
 }
@@ -107,7 +116,7 @@ fn solids(text: &str) -> Vec<String> {
     solids
 }
 
-fn append(soup: &mut PolygonSoup, bytes: &[u8]) -> Result<(), ReadError> {
+fn append(soup: &mut PolygonSoup, bytes: &[u8], limits: &Limits) -> Result<(), ReadError> {
     let error = |soup: &PolygonSoup, error: std::io::Error| {
         let (format, place) = (MeshFormat::Stl, Place::Item("triangle", soup.polygon_count()));
         let problem = brief(&error.to_string());
@@ -121,7 +130,9 @@ fn append(soup: &mut PolygonSoup, bytes: &[u8]) -> Result<(), ReadError> {
         let triangle = triangle.map_err(|e| error(soup, e))?;
         // There cannot be more vertices than corners, which are counted here.
         let first = soup.positions.len() as u32;
-        push_polygon(soup, [first, first.wrapping_add(1), first.wrapping_add(2)], MeshFormat::Stl)?;
+        push_polygon(soup, [first, first.wrapping_add(1), first.wrapping_add(2)], MeshFormat::Stl, limits)?;
+        let place = Place::Item("triangle", soup.polygon_count() - 1);
+        limits.vertices(MeshFormat::Stl, place, soup.positions.len() + 3)?;
         soup.positions.extend(triangle.vertices.map(|v| DVec3::from_array(v.0.map(f64::from))));
     }
     Ok(())

@@ -12,6 +12,7 @@ use crate::sample::SurfacePoint;
 /// Which patches are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct PatchOptions {
     /// From how many random triangles patches grow. More make the norms steadier: `l2` scatters by about
     /// 1 / sqrt(seeds) between values of `seed`. Default: 256.

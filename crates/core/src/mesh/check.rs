@@ -22,7 +22,8 @@ const HOLLOW: f64 = 1e-12;
 
 /// What checking may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct CheckOptions {
     /// Turn closed components that are wound inward outward. Default: true.
     pub turn_outward: bool,

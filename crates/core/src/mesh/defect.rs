@@ -2,7 +2,7 @@
 
 /// What checking changed; all zero for a clean mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct RepairReport {
     /// Vertices merged into an earlier one at exactly the same position.
@@ -40,16 +40,20 @@ impl RepairReport {
 #[non_exhaustive]
 pub enum MeshError {
     /// There is no polygon.
-    #[error("the mesh has no face")]
+    #[error("the mesh has no face: points are spread over faces, so export it with them")]
     NoFace,
     /// No polygon has an area.
-    #[error("none of the {polygons} faces of the mesh has an area")]
+    #[error(
+        "none of the {polygons} faces of the mesh has an area beyond the rounding of its coordinates: look whether its \
+         vertices all lie on a line, or move it nearer to the origin"
+    )]
     NoArea {
         /// How many polygons there are.
         polygons: usize,
     },
     /// A coordinate is NaN or infinite.
-    #[error("vertex {vertex} is at ({}, {}, {}): every coordinate must be a finite number", .position[0], .position[1], .position[2])]
+    #[error("vertex {vertex} is at ({:?}, {:?}, {:?}): every coordinate must be a finite number; repair the mesh or export it \
+         again", .position[0], .position[1], .position[2])]
     NotFinite {
         /// The vertex.
         vertex: usize,
@@ -57,7 +61,10 @@ pub enum MeshError {
         position: [f64; 3],
     },
     /// A corner names a vertex that does not exist.
-    #[error("corner {corner} of face {polygon} is vertex {index}, but there are only {vertices} vertices")]
+    #[error(
+        "corner {corner} of face {polygon} is vertex {index}, but there are only {vertices} vertices (counted from 0): the file is \
+         damaged or was written wrong; export it again"
+    )]
     IndexOutOfRange {
         /// The polygon.
         polygon: usize,

@@ -35,6 +35,7 @@ pub enum GrowthOrder {
 /// How the surface is cut into segments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct SegmentOptions {
     /// The largest angle between the normals of neighbours, in radians, that counts as almost flat. Larger gives
     /// fewer, larger segments. Default: 60 degrees.

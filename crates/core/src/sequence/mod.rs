@@ -23,7 +23,7 @@ pub use shift::{shift, shift_of_seed};
 /// A point set on the unit square, scaled isotropically to the planar domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
 #[non_exhaustive]
 pub enum Sequence {
     /// (i / n, radical inverse of i in `base`): Hammersley 1960, DOI 10.1111/j.1749-6632.1960.tb42846.x.

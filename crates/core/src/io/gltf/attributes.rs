@@ -7,10 +7,10 @@ use glam::{DAffine3, DMat3, DVec2, DVec3, DVec4};
 use gltf::mesh::Primitive;
 use gltf::{Accessor, Node, Semantic};
 
-use super::LARGEST;
 use super::accessor::vectors;
 use super::buffers::Buffers;
 use crate::attributes::{CornerValues, MeshAttributes};
+use crate::io::limits::Limits;
 
 /// The most sets of texture coordinates that are kept.
 const MOST_SETS: u32 = 8;
@@ -29,6 +29,8 @@ pub(super) struct Collector {
     /// The index of each material of the document in the names of the attributes.
     materials: BTreeMap<usize, usize>,
     part: Option<usize>,
+    /// How many values of an attribute there may be.
+    most: usize,
 }
 
 /// Where the values of the primitive at hand begin.
@@ -41,6 +43,10 @@ struct Values {
 }
 
 impl Collector {
+    pub(super) fn new(limits: &Limits) -> Self {
+        Self { most: limits.vertices, ..Self::default() }
+    }
+
     /// A node shows a mesh.
     pub(super) fn enter(&mut self, node: &Node<'_>, mesh: &gltf::Mesh<'_>, transform: DAffine3) {
         // Normals are perpendicular to the surface also where it is scaled or mirrored.
@@ -58,14 +64,14 @@ impl Collector {
         count: usize,
         buffers: &Buffers,
     ) -> Result<(), String> {
-        let Self { attributes, normal_matrix, .. } = self;
+        let Self { attributes, normal_matrix, most, .. } = self;
         let mut values = Values::default();
         if let Some(accessor) = wanted(primitive, &Semantic::Normals, count)? {
             let start = self.normals.get(&accessor.index()).copied();
             values.normals = Some(match start {
                 Some(start) => start,
                 None => {
-                    room(&attributes.normals, count)?;
+                    room(&attributes.normals, count, *most)?;
                     let local = vectors(&accessor, "normals", buffers)?.into_iter().map(DVec3::from_array);
                     attributes.normals.extend(local.map(|n| (*normal_matrix * n).normalize_or_zero()))
                 }
@@ -82,7 +88,7 @@ impl Collector {
             let start = match self.uv.get(&(set, accessor.index())) {
                 Some(&start) => start,
                 None => {
-                    room(&attributes.uv[index], count)?;
+                    room(&attributes.uv[index], count, *most)?;
                     let read = vectors(&accessor, "texture coordinates", buffers)?;
                     // The origin of glTF is the upper left corner.
                     attributes.uv[index].extend(read.into_iter().map(|[u, v]| DVec2::new(u, 1.0 - v)))
@@ -95,7 +101,7 @@ impl Collector {
             let start = match self.colors.get(&accessor.index()) {
                 Some(&start) => start,
                 None => {
-                    room(&attributes.colors, count)?;
+                    room(&attributes.colors, count, *most)?;
                     let read: Vec<DVec4> = if accessor.dimensions().multiplicity() == 3 {
                         let read = vectors(&accessor, "colours", buffers)?;
                         read.into_iter().map(|rgb| DVec3::from_array(rgb).extend(1.0)).collect()
@@ -166,9 +172,9 @@ fn wanted<'a>(
 }
 
 /// A few bytes can ask for the same values a million times.
-fn room<T: Copy>(values: &CornerValues<T>, count: usize) -> Result<(), String> {
-    if count > LARGEST - values.value_count().min(LARGEST) {
-        return Err(format!("there are more than {LARGEST} values of an attribute"));
+fn room<T: Copy>(values: &CornerValues<T>, count: usize, most: usize) -> Result<(), String> {
+    if count > most.saturating_sub(values.value_count()) {
+        return Err(format!("there are more than {most} values of an attribute"));
     }
     Ok(())
 }

@@ -8,9 +8,10 @@ use gltf::texture::{Info, MagFilter, WrappingMode};
 
 use super::buffers::{Buffers, embedded, percent_decoded};
 use super::malformed;
-use crate::attributes::{Filter, Image, Material, MeshAttributes, Texture, Tint, Wrap};
+use crate::attributes::{Filter, Material, MeshAttributes, Texture, Tint, Wrap};
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, Resolver, brief};
+use crate::io::limits::Limits;
+use crate::io::read::{Picture, Place, ReadError, Resolver, brief};
 
 /// Describes the materials that are used; `used` leads from those of the document to the names of the attributes.
 pub(super) fn load(
@@ -18,15 +19,16 @@ pub(super) fn load(
     used: &BTreeMap<usize, usize>,
     attributes: &mut MeshAttributes,
     buffers: &Buffers,
+    limits: &Limits,
     resolver: &Resolver<'_>,
 ) -> Result<(), ReadError> {
     attributes.materials = vec![None; attributes.material_of.names().len()];
-    let mut images = BTreeMap::new();
+    let mut images = Images { document, buffers, limits, resolver, known: BTreeMap::new() };
     for material in document.materials() {
         let Some(&index) = material.index().and_then(|index| used.get(&index)) else { continue };
         let base = material.pbr_metallic_roughness();
         let texture = match base.base_color_texture() {
-            Some(info) => texture(&info, document, &mut images, attributes, buffers, resolver)?,
+            Some(info) => Some(texture(&info, &mut images, attributes)?),
             None => None,
         };
         attributes.materials[index] = Some(Material {
@@ -38,14 +40,41 @@ pub(super) fn load(
     Ok(())
 }
 
+/// Where pictures come from, and which were read.
+struct Images<'a> {
+    document: &'a Document,
+    buffers: &'a Buffers,
+    limits: &'a Limits,
+    resolver: &'a Resolver<'a>,
+    /// Leads from the images of the document to those of the attributes.
+    known: BTreeMap<usize, usize>,
+}
+
+impl Images<'_> {
+    /// The index in the attributes of an image of the document.
+    fn index(&mut self, source: usize, attributes: &mut MeshAttributes) -> Result<usize, ReadError> {
+        if let Some(&index) = self.known.get(&source) {
+            return Ok(index);
+        }
+        let bytes = image_bytes(self.document, source, self.buffers, self.resolver)?;
+        let picture = Picture {
+            bytes: &bytes,
+            format: MeshFormat::Gltf,
+            place: Place::Item("image", source),
+            called: "the picture".to_owned(),
+            advice: "export it with PNG or JPEG textures",
+        };
+        let index = picture.decode(attributes, self.limits)?;
+        self.known.insert(source, index);
+        Ok(index)
+    }
+}
+
 fn texture(
     info: &Info<'_>,
-    document: &Document,
-    images: &mut BTreeMap<usize, usize>,
+    images: &mut Images<'_>,
     attributes: &mut MeshAttributes,
-    buffers: &Buffers,
-    resolver: &Resolver<'_>,
-) -> Result<Option<Texture>, ReadError> {
+) -> Result<Texture, ReadError> {
     let texture = info.texture();
     let place = Place::Item("texture", texture.index());
     let Some(source) = texture.source() else {
@@ -56,21 +85,7 @@ fn texture(
             advice: "export it with PNG or JPEG textures",
         });
     };
-    let image = match images.get(&source.index()) {
-        Some(&image) => image,
-        None => {
-            let bytes = image_bytes(document, source.index(), buffers, resolver)?;
-            let image = Image::decode(&bytes).map_err(|error| ReadError::Unsupported {
-                format: MeshFormat::Gltf,
-                place: Place::Item("image", source.index()),
-                what: format!("the picture ({})", brief(&error.to_string())),
-                advice: "export it with PNG or JPEG textures",
-            })?;
-            attributes.images.push(image);
-            images.insert(source.index(), attributes.images.len() - 1);
-            attributes.images.len() - 1
-        }
-    };
+    let image = images.index(source.index(), attributes)?;
     let sampler = texture.sampler();
     let wrap = |mode| match mode {
         WrappingMode::ClampToEdge => Wrap::Clamp,
@@ -86,7 +101,7 @@ fn texture(
         let [scale, offset] = [moved.scale(), moved.offset()].map(vector);
         DAffine2::from_cols(DVec2::new(cos, sin) * scale.x, DVec2::new(-sin, cos) * scale.y, offset)
     });
-    Ok(Some(Texture {
+    Ok(Texture {
         image,
         uv_set: uv_set as usize,
         transform,
@@ -96,7 +111,7 @@ fn texture(
         } else {
             Filter::Linear
         },
-    }))
+    })
 }
 
 /// The bytes of a picture: in a buffer, in the document, or beside it.

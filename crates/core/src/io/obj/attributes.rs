@@ -25,6 +25,7 @@ pub(super) fn read(text: &str, model: &mut Model) -> Result<Vec<String>, ReadErr
         return Err(ReadError::Malformed { format: MeshFormat::Obj, place: Place::Line(line), problem });
     }
     debug_assert_eq!(reader.corners, model.soup.corners.len());
+    debug_assert_eq!(reader.polygons, model.soup.polygon_count());
     let Reader { mut attributes, uv, color_of, libraries, .. } = reader;
     attributes.uv = vec![uv];
     for (corner, &vertex) in model.soup.corners.iter().enumerate() {
@@ -52,8 +53,7 @@ struct Reader {
 
 impl Reader {
     fn statement(&mut self, statement: &str) -> Result<(), String> {
-        let trimmed = statement.trim();
-        let (keyword, rest) = trimmed.split_once([' ', '\t']).unwrap_or((trimmed, ""));
+        let (keyword, rest) = keyword(statement);
         match keyword {
             "v" => {
                 let color = match numbers::<6>(rest) {
@@ -86,7 +86,7 @@ impl Reader {
     }
 
     fn face(&mut self, rest: &str) -> Result<(), String> {
-        for word in rest.split('#').next().unwrap_or_default().split_ascii_whitespace() {
+        for word in rest.split('#').next().unwrap_or_default().split_whitespace() {
             let mut indices = word.split('/');
             // The vertex itself is known already.
             indices.next();
@@ -106,6 +106,14 @@ impl Reader {
     }
 }
 
+/// The keyword and what follows it, told apart exactly as where the polygons are read, by `tobj` too: by white space and
+/// `#`.
+fn keyword(statement: &str) -> (&str, &str) {
+    let statement = statement.trim_start();
+    let end = statement.find(|c: char| c.is_whitespace() || c == '#').unwrap_or(statement.len());
+    statement.split_at(end)
+}
+
 /// The index of a name that is not empty.
 fn named(names: &mut PolygonNames, name: &str) -> Option<usize> {
     let name = name.trim();
@@ -114,7 +122,7 @@ fn named(names: &mut PolygonNames, name: &str) -> Option<usize> {
 
 /// The first `N` numbers; `None` unless there are as many.
 fn numbers<const N: usize>(rest: &str) -> Option<[f64; N]> {
-    let mut words = rest.split('#').next()?.split_ascii_whitespace();
+    let mut words = rest.split('#').next()?.split_whitespace();
     let mut numbers = [0.0; N];
     for number in &mut numbers {
         *number = f64::from_str(words.next()?).ok().filter(|number| number.is_finite())?;

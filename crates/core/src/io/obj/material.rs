@@ -3,14 +3,16 @@
 
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 
-use crate::attributes::{Filter, Image, Material, MeshAttributes, Texture, Tint, Wrap, from_srgb};
+use crate::attributes::{Filter, Material, MeshAttributes, Texture, Tint, Wrap, from_srgb};
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, Resolver, brief, text};
+use crate::io::limits::Limits;
+use crate::io::read::{self, Place, ReadError, Resolver, brief, text};
 
 /// Reads the libraries that a file names and describes its materials: the last description of a name counts.
 pub(super) fn load(
     libraries: &[String],
     attributes: &mut MeshAttributes,
+    limits: &Limits,
     resolver: &Resolver<'_>,
 ) -> Result<(), ReadError> {
     attributes.materials = vec![None; attributes.material_of.names().len()];
@@ -20,7 +22,11 @@ pub(super) fn load(
             for described in parse(&text(&bytes)) {
                 let Some(index) = attributes.material_of.find(&described.name) else { continue };
                 let texture = match described.picture {
-                    Some(picture) => Some(texture(picture, &address, &mut pictures, attributes, resolver)?),
+                    Some(picture) => {
+                        let image =
+                            fetch_picture(&picture, &address, &mut pictures, attributes, limits, resolver)?;
+                        Some(texture(&picture, image))
+                    }
                     None => None,
                 };
                 let base_color = DVec3::from_array(described.kd.map(from_srgb)).extend(described.opacity);
@@ -130,35 +136,39 @@ fn picture(mut rest: &str) -> Option<Picture> {
     (!picture.address.is_empty()).then_some(picture)
 }
 
-fn texture(
-    picture: Picture,
+/// The index of a picture, which is read once.
+fn fetch_picture(
+    picture: &Picture,
     library: &str,
     pictures: &mut Vec<(String, usize)>,
     attributes: &mut MeshAttributes,
+    limits: &Limits,
     resolver: &Resolver<'_>,
-) -> Result<Texture, ReadError> {
+) -> Result<usize, ReadError> {
     // Pictures lie beside the library.
     let folder = library.rsplit_once('/').map_or("", |(folder, _)| folder);
-    let address = if folder.is_empty() { picture.address } else { format!("{folder}/{}", picture.address) };
-    let known = pictures.iter().find(|(known, _)| *known == address).map(|&(_, index)| index);
-    let image = match known {
-        Some(index) => index,
-        None => {
-            let bytes = resolver(&address).map_err(|reason| missing(&address, reason))?;
-            let image = Image::decode(&bytes).map_err(|error| ReadError::Unsupported {
-                format: MeshFormat::Obj,
-                place: Place::File,
-                what: format!("the picture {:?} ({})", brief(&address), brief(&error.to_string())),
-                advice: "save it as PNG or JPEG",
-            })?;
-            attributes.images.push(image);
-            pictures.push((address, attributes.images.len() - 1));
-            attributes.images.len() - 1
-        }
+    let address =
+        if folder.is_empty() { picture.address.clone() } else { format!("{folder}/{}", picture.address) };
+    if let Some(&(_, index)) = pictures.iter().find(|(known, _)| *known == address) {
+        return Ok(index);
+    }
+    let bytes = resolver(&address).map_err(|reason| missing(&address, reason))?;
+    let picture = read::Picture {
+        bytes: &bytes,
+        format: MeshFormat::Obj,
+        place: Place::File,
+        called: format!("the picture {:?}", brief(&address)),
+        advice: "save it as PNG or JPEG",
     };
+    let index = picture.decode(attributes, limits)?;
+    pictures.push((address, index));
+    Ok(index)
+}
+
+fn texture(picture: &Picture, image: usize) -> Texture {
     // The options are meant for coordinates with the origin at the lower left.
     let (scale, offset) = (picture.scale, picture.offset);
-    Ok(Texture {
+    Texture {
         image,
         uv_set: 0,
         transform: DAffine2::from_mat2_translation(
@@ -167,7 +177,7 @@ fn texture(
         ),
         wrap: [picture.wrap; 2],
         filter: Filter::Linear,
-    })
+    }
 }
 
 #[cfg(test)]

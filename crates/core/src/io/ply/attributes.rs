@@ -6,11 +6,10 @@ use ply_rs_bw::ply::{
 };
 
 use super::{add_faces, is_corners};
-use crate::attributes::{
-    CornerValues, Filter, Image, Material, MeshAttributes, Texture, Tint, Wrap, from_srgb,
-};
+use crate::attributes::{CornerValues, Filter, Material, MeshAttributes, Texture, Tint, Wrap, from_srgb};
 use crate::io::detect::MeshFormat;
-use crate::io::read::{Place, ReadError, Resolver, brief};
+use crate::io::limits::Limits;
+use crate::io::read::{Picture, Place, ReadError, Resolver, brief};
 use crate::mesh::PolygonSoup;
 
 /// All scalars of a vertex, in the order of the header.
@@ -167,9 +166,10 @@ impl Faces {
         element: &ElementDef,
         faces: &[Face],
         soup: &mut PolygonSoup,
+        limits: &Limits,
     ) -> Result<(), ReadError> {
         let (mut corner, mut polygon) = (soup.corners.len(), soup.polygon_count());
-        add_faces(soup, faces.iter().map(|face| &face.corners[..]))?;
+        add_faces(soup, faces.iter().map(|face| &face.corners[..]), limits)?;
         let colors = Colors::of(element);
         let material = columns(element, ["material_index"]);
         for face in faces {
@@ -238,6 +238,7 @@ pub(super) fn texture(
     header: &Header,
     soup: &PolygonSoup,
     found: &mut MeshAttributes,
+    limits: &Limits,
     resolver: &Resolver<'_>,
 ) -> Result<(), ReadError> {
     let mut files =
@@ -253,19 +254,20 @@ pub(super) fn texture(
         });
     }
     let bytes = resolver(file).map_err(|reason| ReadError::Missing { format, uri: brief(file), reason })?;
-    let image = Image::decode(&bytes).map_err(|error| ReadError::Unsupported {
+    let picture = Picture {
+        bytes: &bytes,
         format,
         place: Place::File,
-        what: format!("the picture {:?} ({})", brief(file), brief(&error.to_string())),
+        called: format!("the picture {:?}", brief(file)),
         advice: "save it as PNG or JPEG",
-    })?;
+    };
+    let image = picture.decode(found, limits)?;
     let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
     found.material_of = Default::default();
     let index = found.material_of.push(stem);
     found.material_of.set(0..soup.polygon_count(), Some(index));
-    found.images.push(image);
     let texture = Texture {
-        image: 0,
+        image,
         uv_set: 0,
         transform: DAffine2::IDENTITY,
         wrap: [Wrap::Repeat; 2],

@@ -15,6 +15,8 @@ use crate::sample::{Sample, SurfacePoint};
 
 /// Something that a point can carry besides its position.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "String", into = "String"))]
 #[non_exhaustive]
 pub enum Attribute {
     /// The unit normal of the face. In the columns nx, ny, nz; in flat_nx, flat_ny, flat_nz beside smooth normals.
@@ -128,6 +130,20 @@ impl FromStr for Attribute {
         }
         let found = Self::FIXED.into_iter().find(|known| known.to_string() == text);
         found.ok_or_else(|| AttributeError::Unknown(text.to_owned()))
+    }
+}
+
+impl TryFrom<String> for Attribute {
+    type Error = AttributeError;
+
+    fn try_from(text: String) -> Result<Self, AttributeError> {
+        text.parse()
+    }
+}
+
+impl From<Attribute> for String {
+    fn from(attribute: Attribute) -> Self {
+        attribute.to_string()
     }
 }
 

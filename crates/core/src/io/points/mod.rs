@@ -17,11 +17,14 @@ use std::io;
 
 use glam::DVec3;
 
+use crate::io::read::brief;
 use crate::mesh::SurfaceMesh;
 use crate::sample::Sample;
 
 /// A point file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum PointFormat {
     /// PLY, binary little-endian: `double` x y z, `float` nx ny nz, `int` face and
@@ -224,7 +227,7 @@ pub enum PointsError {
         problem: String,
     },
     /// A coordinate is infinite or not a number.
-    #[error("{format}, {place}: the position {position} is not finite")]
+    #[error("{format}, {place}: the position ({:?}, {:?}, {:?}) is not finite", .position.x, .position.y, .position.z)]
     NotFinite {
         /// The format.
         format: PointFormat,
@@ -296,7 +299,8 @@ impl Points {
     }
 
     fn malformed(&self, place: PointPlace, problem: impl Into<String>) -> PointsError {
-        PointsError::Malformed { format: self.format, place, problem: problem.into() }
+        // What a library says may quote the file.
+        PointsError::Malformed { format: self.format, place, problem: brief(&problem.into()) }
     }
 }
 

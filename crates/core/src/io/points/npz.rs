@@ -5,14 +5,12 @@ use std::io::{self, Cursor, Read, Write};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
+use crate::io::Limits;
 use crate::io::points::field::origin_number;
 use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError, Precision, npy};
 
 /// Arrays that hold positions, as programs call them.
 const POSITIONS: [&str; 5] = ["position", "positions", "points", "xyz", "vertices"];
-
-/// The most bytes that an array may unpack to.
-const MOST_UNPACKED: u64 = if usize::BITS < 64 { 1 << 30 } else { 1 << 36 };
 
 pub(super) fn write(fields: &[Field], out: &mut dyn Write) -> io::Result<()> {
     // Not compressed, as `numpy.savez`: the same bits on every system, and arrays can be mapped into memory. Without a
@@ -94,6 +92,11 @@ pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError>
     };
     let file = archive.by_name(&format!("{name}.npy")).map_err(|error| broken(error.to_string()))?;
     let mut array = Vec::new();
-    file.take(MOST_UNPACKED).read_to_end(&mut array).map_err(|error| broken(error.to_string()))?;
+    // A few bytes can unpack to a thousand times as many.
+    let most_unpacked = Limits::default().bytes;
+    file.take(most_unpacked + 1).read_to_end(&mut array).map_err(|error| broken(error.to_string()))?;
+    if array.len() as u64 > most_unpacked {
+        return Err(broken(format!("{name} unpacks to more than {most_unpacked} bytes: split it")));
+    }
     npy::read(&array, points)
 }

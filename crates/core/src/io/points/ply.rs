@@ -11,6 +11,7 @@ use ply_rs_bw::ply::{
 };
 use ply_rs_bw::writer::Writer;
 
+use crate::io::ply::first_line;
 use crate::io::points::field::origin_number;
 use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError, Precision};
 
@@ -123,7 +124,7 @@ impl PropertyAccess for Row<'_> {
 pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError> {
     let parser = Parser::<Position>::new();
     let mut reader = Reader::new(bytes);
-    let header = parser.read_header(&mut reader).map_err(|error| located(points, &error))?;
+    let header = parser.read_header(&mut reader).map_err(|error| located(points, ASCII, &error))?;
     for (name, element) in &header.elements {
         // An element without properties takes no bytes, so no end of the file would ever stop it.
         if element.properties.is_empty() && element.count > 0 {
@@ -131,7 +132,7 @@ pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError>
         }
         let elements = parser
             .read_payload_for_element(&mut reader, element, &header)
-            .map_err(|error| located(points, &error))?;
+            .map_err(|error| located(points, header.encoding, &error))?;
         if name == "vertex" {
             for axis in ["x", "y", "z"] {
                 if !element
@@ -151,9 +152,11 @@ pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError>
     Err(points.malformed(PointPlace::File, "there is no element called vertex"))
 }
 
-fn located(points: &Points, error: &ply_rs_bw::parser::ParseError) -> PointsError {
-    let place = error.line().map_or(PointPlace::File, |line| PointPlace::Line(line as u64));
-    points.malformed(place, error.to_string())
+/// Only text has lines.
+fn located(points: &Points, encoding: Encoding, error: &ply_rs_bw::parser::ParseError) -> PointsError {
+    let line = error.line().filter(|_| encoding == ASCII);
+    let place = line.map_or(PointPlace::File, |line| PointPlace::Line(line as u64));
+    points.malformed(place, first_line(error))
 }
 
 struct Position(DVec3);

@@ -20,6 +20,7 @@ use crate::spatial::{Camera, Caster};
 /// Which views are looked at, and how exactly the visible area is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct ViewOptions {
     /// How many cameras, half of them orthographic. `l2` scatters by about 1 / sqrt(2 views) of itself between
     /// values of `seed`. Default: 128.

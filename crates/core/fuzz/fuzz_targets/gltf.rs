@@ -1,0 +1,6 @@
+//! Any bytes as Gltf.
+#![no_main]
+
+use ldwrap::io::MeshFormat;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| ldwrap_fuzz::readers::mesh(MeshFormat::Gltf, bytes));
