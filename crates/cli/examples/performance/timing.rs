@@ -32,10 +32,11 @@ impl Times {
         Self(self.0.iter().map(|a| a / number).collect())
     }
 
-    /// The median with the least and greatest.
+    /// The median, with the least and greatest where they differ.
     pub(crate) fn shown(&self) -> String {
         let (low, high) = self.range();
-        format!("{} ({} to {})", seconds(self.median()), seconds(low), seconds(high))
+        let median = seconds(self.median());
+        if low < high { format!("{median} ({} to {})", seconds(low), seconds(high)) } else { median }
     }
 }
 
