@@ -1,8 +1,10 @@
-//! Everything that must hold before a change lands: formatting, lints, the page, tests, documentation, packages.
+//! Everything that must hold before a change lands: formatting, lints, the page, tests, instruction counts, documentation,
+//! packages.
 
 use std::time::Instant;
 
 use crate::command::{cargo, run};
+use crate::instructions::{self, Then};
 use crate::{Failure, browser, fuzz, in_ci, web};
 
 /// What is published.
@@ -53,6 +55,7 @@ pub fn run_all() -> Result<(), Failure> {
         }
         run(&mut test)
     })?;
+    step("instructions", || instructions::check(Then::Compare))?;
     step("fuzz", || fuzz::run_all(FUZZ_SECONDS))?;
     step("documentation", || {
         run(cargo()

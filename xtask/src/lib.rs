@@ -5,6 +5,7 @@ pub mod browser;
 pub mod checks;
 pub mod command;
 pub mod fuzz;
+pub mod instructions;
 pub mod serve;
 pub mod toolchain;
 pub mod web;

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use xtask::instructions::{self, Then};
 use xtask::{browser, checks, fuzz, serve, web};
 
 const HELP: &str = "\
@@ -10,6 +11,7 @@ cargo xtask test               everything that must hold before a change lands (
 cargo xtask web [--api]        builds the page into target/web; --api the JavaScript package into target/npm
 cargo xtask serve [PORT]       builds the page and serves it on this machine (default port 8080)
 cargo xtask fuzz [SECONDS]     fuzzes each reader and the pipeline for so long (default 600)
+cargo xtask instructions       counts the instructions of fixed jobs (needs valgrind); --renew writes them as the new bound
 cargo xtask help               this text";
 
 fn main() -> ExitCode {
@@ -17,6 +19,8 @@ fn main() -> ExitCode {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words[..] {
         ["test"] => checks::run_all(),
+        ["instructions"] => instructions::check(Then::Compare),
+        ["instructions", "--renew"] => instructions::check(Then::Renew),
         ["web"] => web::build_page().map(|folder| eprintln!("the page is in {}", folder.display())),
         ["web", "--api"] => {
             web::build_package().map(|folder| eprintln!("the package is in {}", folder.display()))

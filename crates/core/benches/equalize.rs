@@ -1,26 +1,20 @@
-//! How long equalizing takes, and wrapping before it, on a scan of 97,000 triangles, the size of the paper's horse.
+//! How long equalizing takes, on a mesh of 97,000 triangles.
+
+mod common;
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use ldwrap::density::Density;
 use ldwrap::equalize::{EqualizeOptions, ForViews, equalize};
-use ldwrap::pipeline::{Options, Request, run};
-use ldwrap::{CheckOptions, Silent, StripId, SurfaceMesh, SurfacePoint, shapes};
+use ldwrap::{Silent, StripId};
 
 fn benchmarks(criterion: &mut Criterion) {
-    let soup = shapes::scan_like(1, 97_000);
-    let mesh = SurfaceMesh::from_soup(&soup, &CheckOptions::default()).expect("the shape is clean").0;
+    let mesh = common::mesh();
     let mut group = criterion.benchmark_group("equalize");
-    group.sample_size(10);
     for count in [335, 1_000, 10_000, 100_000] {
-        let options = Options { request: Request::Count(count), ..Options::default() };
-        let wrapped = run(&mesh, &options, &Silent).expect("the options can be met");
-        let points: Vec<SurfacePoint> = wrapped.samples.iter().map(|s| s.point).collect();
+        let (wrapped, points) = common::wrapped(&mesh, count);
         let strips: Vec<StripId> = wrapped.strips.places.iter().map(|p| p.strip).collect();
-        group.bench_with_input(BenchmarkId::new("wrap", count), &options, |b, options| {
-            b.iter(|| black_box(run(&mesh, options, &Silent)));
-        });
         let equalized = |options: EqualizeOptions| {
             equalize(&mesh, &points, &strips, &Density::UNIFORM, &options, &Silent)
         };
@@ -37,5 +31,5 @@ fn benchmarks(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, benchmarks);
+criterion_group! { name = benches; config = common::quick(); targets = benchmarks }
 criterion_main!(benches);
