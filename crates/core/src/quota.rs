@@ -13,7 +13,7 @@
 //! // A cube and, a hundredth as large, another.
 //! let mut soup = shapes::cube(2);
 //! let (first, small) = (soup.positions.len() as u32, shapes::cube(1));
-//! soup.positions.extend(small.positions.iter().map(|p| *p * 0.01 + glam::DVec3::X));
+//! soup.positions.extend(small.positions.iter().map(|p| *p * 0.01 + glam::DVec3::X * 5.0));
 //! for polygon in 0..small.polygon_count() {
 //!     soup.push_polygon(&small.polygon(polygon).iter().map(|v| v + first).collect::<Vec<_>>());
 //! }
@@ -22,7 +22,7 @@
 //! let counts = quota::at_least(&mesh, &Density::UNIFORM, 100, 10)?;
 //! assert_eq!(counts, [90, 10]);
 //! let samples = quota::run(&mesh, &Density::UNIFORM, &counts, &Options::for_count(100), &Silent)?.samples;
-//! let on_small = samples.iter().filter(|s| mesh.locate(&s.point).x > 0.9).count();
+//! let on_small = samples.iter().filter(|s| mesh.locate(&s.point).x > 4.0).count();
 //! assert_eq!(on_small, 10);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

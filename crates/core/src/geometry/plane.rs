@@ -61,9 +61,13 @@ fn in_needle(corners: [DVec2; 3], p: DVec2) -> [f64; 3] {
     let (side, up, at) = (to - from, apex - from, p - from);
     let squared = side.length_squared();
     let height = side.perp_dot(up);
-    let high = if height == 0.0 { 0.0 } else { (side.perp_dot(at) / height).clamp(0.0, 1.0) };
-    let along = (at.dot(side) - high * up.dot(side)) / squared;
-    let far = along.clamp(0.0, 1.0 - high);
+    let [along, apex_along] = [at, up].map(|v| (v.dot(side) / squared).clamp(0.0, 1.0));
+    // The triangle is no higher than this there.
+    let left = if apex_along > 0.0 { along / apex_along } else { 1.0 };
+    let right = if apex_along < 1.0 { (1.0 - along) / (1.0 - apex_along) } else { 1.0 };
+    let most = left.min(right).min(1.0);
+    let high = if height == 0.0 { 0.0 } else { (side.perp_dot(at) / height).clamp(0.0, most) };
+    let far = (along - high * apex_along).clamp(0.0, 1.0 - high);
     let mut weights = [0.0; 3];
     weights[first] = 1.0 - high - far;
     weights[(first + 1) % 3] = far;

@@ -242,7 +242,8 @@ mod tests {
         assert!(message("OFF\n3 1 0\n0 0 0\n0 0\n").contains("line 4: a coordinate is missing"));
         assert!(message("OFF\n3 1 0\n0 0 0\n").contains("line 3: it ends before the end of the vertices"));
         assert!(message("OFF\n1 1 0\n0 0 0\n3 0 1 -2\n").contains("\"-2\""));
-        assert!(message("OFF\n1000000000000 1 0\n0 0 0\n").contains("cut off"));
+        assert!(message("OFF\n1000000 1 0\n0 0 0\n").contains("cut off"));
+        assert!(message("OFF\n1000000000000 1 0\n0 0 0\n").contains("which is the limit"));
         assert!(message("OFF\n1 1 0\n0 0 0\n99999999999 0 0\n").contains("line 4: a corner is missing"));
         assert!(message("OFF BINARY\n\0\0\0").contains("binary OFF cannot be read"));
         assert!(message("nOFF\n4\n1 1 1\n0 0 0 0\n").contains("other than three"));

@@ -331,8 +331,11 @@ pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
 /// The start of what a file or a library says, on one line, for messages.
 pub(super) fn brief(text: &str) -> String {
     const LONGEST: usize = 160;
-    let mut brief: String =
-        text.chars().take(LONGEST).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let mut brief: String = text
+        .chars()
+        .take(LONGEST)
+        .map(|c| if c.is_alphanumeric() || c.is_ascii_graphic() { c } else { ' ' })
+        .collect();
     if brief.len() < text.len() {
         brief.push_str("...");
     }

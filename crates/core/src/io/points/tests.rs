@@ -307,9 +307,9 @@ fn broken_files_tell_where() {
     let cases = [
         ("a.xyz", "1 2 3\n\n4 5\n", "xyz, line 3: 2 of the 3 coordinates of a point"),
         ("a.xyz", "1 2 3\n4 5 six\n", "xyz, line 2: \"six\" is not a number"),
-        ("a.xyz", "1 2 3\n4 inf 6\n", "xyz, line 2: the position [4, inf, 6] is not finite"),
+        ("a.xyz", "1 2 3\n4 inf 6\n", "xyz, line 2: the position (4.0, inf, 6.0) is not finite"),
         ("a.xyz", "x y z\nx y z\n", "xyz, line 2: \"x\" is not a number"),
-        ("a.csv", "x,y,z\n1,2,3\n1,NaN,3\n", "csv, line 3: the position [1, NaN, 3] is not finite"),
+        ("a.csv", "x,y,z\n1,2,3\n1,NaN,3\n", "csv, line 3: the position (1.0, NaN, 3.0) is not finite"),
         ("a.csv", "z,y\n1,2\n", "csv, line 2: 2 of the 3 coordinates of a point"),
         ("a.csv", "", "csv: there is no point in the file"),
         ("a.obj", "v 1 2 3\nv 1 2\n", "obj, line 2: 2 of the 3 coordinates of a point"),
