@@ -439,7 +439,8 @@ mod section_4_3 {
     fn check_estimates(name: &str, mesh: &SurfaceMesh) {
         let Unfolded { strips, .. } = unfolded(mesh, &SegmentOptions::default());
         for n in [30, 1_000] {
-            let Irregularity { bound: rough, refined, exact } = irregularity_at(mesh, &strips, n);
+            let Irregularity { bound: rough, refined, exact, undecided } = irregularity_at(mesh, &strips, n);
+            assert!(undecided <= 1e-4, "{name} {n}: {undecided}");
             assert!((0.0..=1.0).contains(&exact), "{name}, n = {n}: {exact}");
             assert!(refined >= 0.0 && rough >= 0.0, "{name}, n = {n}: {rough}, {refined}");
             // Eq. 8 is an upper bound of the others; of `exact` half of 1e-4 may be undecided.

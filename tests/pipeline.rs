@@ -260,3 +260,38 @@ fn a_moebius_band() {
     }
     check_whole("moebius", &mesh(&soup), 100);
 }
+
+#[test]
+fn large_faces_are_spread_over_as_small_ones_are() {
+    for shape in [Shape::Tetrahedron, Shape::Cube] {
+        let mesh = mesh(&shape.generate());
+        for n in [100, 1_000] {
+            let points: Vec<_> = found(&mesh, &of_count(n)).points().collect();
+            let eta = ldwrap::measure::energy(&mesh, &points, &Default::default(), &Silent).eta;
+            assert!(eta > 0.3, "{shape:?}, n = {n}: {eta}");
+        }
+    }
+}
+
+#[test]
+fn a_jump_of_the_density_keeps_the_points_on_its_sides() {
+    let mesh = mesh(&shapes::square(10));
+    let weights: Vec<f64> = mesh
+        .topology()
+        .face_ids()
+        .map(|face| mesh.triangle(face).iter().map(|p| p.x).sum::<f64>())
+        .map(|x| if x > 1.5 * (mesh.bounds().0.x + mesh.bounds().1.x) { 100.0 } else { 1.0 })
+        .collect();
+    let density = ldwrap::density::Density::of_faces(&mesh, &weights).unwrap();
+    let masses = density.face_masses(&mesh);
+    let light = |face: ldwrap::FaceId| weights[face.index()] == 1.0;
+    let share: f64 = mesh.topology().face_ids().filter(|f| light(*f)).map(|f| masses[f.index()]).sum::<f64>()
+        / masses.iter().sum::<f64>();
+    for n in [50, 335, 1_000] {
+        let options = Options { equalize: Some(EqualizeOptions::default()), ..of_count(n) };
+        let run = ldwrap::pipeline::run_weighted(&mesh, &density, &options, &Silent).unwrap();
+        let count = run.samples.iter().filter(|s| light(s.point.face)).count() as f64;
+        let due = share * n as f64;
+        assert!((count - due).abs() <= 2.0 + 0.5 * due, "n = {n}: {count} of {due}");
+    }
+}

@@ -232,7 +232,7 @@ pub fn run_weighted(
         domain: &domain,
         sequence: options.sequence,
         shift: sequence::shift_of_seed(options.seed),
-        choice: options.selection.choice(options.equalize.is_some()),
+        choice: options.selection.choice(options.equalize.is_some() && density.is_uniform()),
         tolerance,
     };
     let Scattered { samples, correction, d_m } = scattering.meet(options.request)?;

@@ -8,7 +8,8 @@ pub enum Selection {
     /// For an exact count: twice as many points are wrapped, the surface is cut into as many regions of equal mass as
     /// points are wanted, and the most central point of each stays. So open borders do not put too many or too few
     /// points in any part. Other requests: as `Sequence`. Equalizing puts whole numbers of points into all parts by
-    /// itself: before it, points wrapped in one go are thinned out evenly along the sequence.
+    /// itself: before it, if there are no weights, points wrapped in one go are
+    /// thinned out evenly along the sequence.
     #[default]
     Regions,
     /// The paper's: about as many points are wrapped as are wanted; for an exact count the few too many are left out

@@ -11,24 +11,80 @@ use glam::DVec3;
 use crate::correct::Corrected;
 use crate::density::Density;
 use crate::halves::split_by_mass;
-use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
+use crate::sample::SurfacePoint;
 
-/// A face as a mass in one place.
+/// A leaf, or a component, as a mass in one place.
 #[derive(Clone, Copy, Debug)]
 struct Item {
     position: DVec3,
     /// In points.
     mass: f64,
-    face: FaceId,
+    /// Which leaf or component.
+    id: u32,
 }
 
-/// Regions of equal mass. Faces lie in a row along which regions follow each other; a face larger than a region is cut
-/// into bands.
+/// The largest mass of a leaf, in points.
+const LEAF: f64 = 0.25;
+
+/// No face is halved more often than this.
+const DEEPEST: u32 = 24;
+
+/// The leaves of a face: the face, halved across its longest side until no part holds more than [`LEAF`].
+#[derive(Clone, Copy, Debug)]
+struct Leaves {
+    /// The number of its first leaf.
+    first: u32,
+    /// How often it is halved.
+    depth: u32,
+}
+
+/// A part of a face, with the barycentric coordinates of a place in it.
+#[derive(Clone, Copy)]
+struct Part {
+    corners: [DVec3; 3],
+    weights: [f64; 3],
+}
+
+impl Part {
+    /// Its half that holds the place, and whether that is the second one.
+    fn half(&self) -> (Self, bool) {
+        let [a, b, c] = self.corners;
+        let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+        let long = (0..3).fold(0, |best, side| if sides[side] > sides[best] { side } else { best });
+        let (from, to, apex) = (long, (long + 1) % 3, (long + 2) % 3);
+        let middle = (self.corners[from] + self.corners[to]) * 0.5;
+        let second = self.weights[to] > self.weights[from];
+        let (kept, gone) = if second { (to, from) } else { (from, to) };
+        let part = Self {
+            corners: [self.corners[kept], middle, self.corners[apex]],
+            weights: [self.weights[kept] - self.weights[gone], 2.0 * self.weights[gone], self.weights[apex]],
+        };
+        (part, second)
+    }
+}
+
+/// The corners of the leaves below a part, in the order of their numbers.
+fn leaves(corners: [DVec3; 3], depth: u32, emit: &mut impl FnMut([DVec3; 3])) {
+    if depth == 0 {
+        emit(corners);
+        return;
+    }
+    let [a, b, c] = corners;
+    let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+    let long = (0..3).fold(0, |best, side| if sides[side] > sides[best] { side } else { best });
+    let (from, to, apex) = (corners[long], corners[(long + 1) % 3], corners[(long + 2) % 3]);
+    let middle = (from + to) * 0.5;
+    leaves([from, middle, apex], depth - 1, emit);
+    leaves([to, middle, apex], depth - 1, emit);
+}
+
+/// Regions of equal mass. Leaves lie in a row along which regions follow each other.
 #[derive(Clone, Debug)]
 pub(crate) struct Regions {
-    /// For each face where in the row it lies; the unit is a region.
+    of_face: Vec<Leaves>,
+    /// For each leaf where in the row it lies; the unit is a region.
     along: Vec<Range<f64>>,
     /// The centroids of the regions.
     centroids: Vec<DVec3>,
@@ -40,14 +96,23 @@ impl Regions {
         let scale = n as f64 / density.face_masses(mesh).iter().sum::<f64>();
         let components = mesh.topology().components();
         let mut items: Vec<Vec<Item>> = vec![Vec::new(); components.count];
+        let mut of_face = Vec::with_capacity(mesh.face_count());
+        let mut corners = Vec::with_capacity(mesh.face_count());
         for face in mesh.topology().face_ids() {
-            let [a, b, c] = mesh.triangle(face);
-            let item = Item {
-                position: a / 3.0 + b / 3.0 + c / 3.0,
-                mass: density.face_mass(mesh, face) * scale,
-                face,
-            };
-            items[components.of_face[face.index()] as usize].push(item);
+            let mass = density.face_mass(mesh, face) * scale;
+            let depth = (libm::ceil(libm::log2((mass / LEAF).max(1.0))) as u32).min(DEEPEST);
+            of_face.push(Leaves { first: corners.len() as u32, depth });
+            let items = &mut items[components.of_face[face.index()] as usize];
+            leaves(mesh.triangle(face), depth, &mut |leaf| {
+                let [a, b, c] = leaf;
+                let position = a / 3.0 + b / 3.0 + c / 3.0;
+                items.push(Item {
+                    position,
+                    mass: mass / f64::from(1u32 << depth),
+                    id: corners.len() as u32,
+                });
+                corners.push(leaf);
+            });
         }
         // Components are cut from each other first, so that their shares are right to within a point.
         let mut row: Vec<Item> = (0..)
@@ -55,21 +120,21 @@ impl Regions {
             .map(|(c, items)| {
                 let mass: f64 = items.iter().map(|i| i.mass).sum();
                 let middle = items.iter().map(|i| i.position / items.len() as f64).sum();
-                Item { position: middle, mass, face: FaceId(c) }
+                Item { position: middle, mass, id: c }
             })
             .collect();
         cut(&mut row, 0.0);
         let mut before = 0.0;
         let mut starts = vec![0.0; components.count];
         for component in row {
-            starts[component.face.index()] = before;
+            starts[component.id as usize] = before;
             before += component.mass;
         }
         for (items, start) in items.iter_mut().zip(&starts) {
             cut(items, *start);
         }
         let last = n - 1;
-        let mut along = vec![0.0..0.0; mesh.face_count()];
+        let mut along = vec![0.0..0.0; corners.len()];
         // The moments and masses of the regions.
         let mut sums = vec![(DVec3::ZERO, 0.0); n];
         for (items, start) in items.iter().zip(starts) {
@@ -83,14 +148,14 @@ impl Regions {
                     let shared = (range.end.min(region as f64 + 1.0) - from).max(0.0);
                     let mass = item.mass.max(f64::MIN_POSITIVE);
                     let from = (from - range.start) / mass;
-                    sum.0 += band_middle(mesh, item.face, from..from + shared / mass) * shared;
+                    sum.0 += band_middle(corners[item.id as usize], from..from + shared / mass) * shared;
                     sum.1 += shared;
                 }
-                along[item.face.index()] = range;
+                along[item.id as usize] = range;
             }
         }
         let middle = |(moment, mass): (DVec3, f64)| if mass > 0.0 { moment / mass } else { moment };
-        Self { along, centroids: sums.into_iter().map(middle).collect() }
+        Self { of_face, along, centroids: sums.into_iter().map(middle).collect() }
     }
 
     fn region_at(&self, along: f64) -> usize {
@@ -98,10 +163,18 @@ impl Regions {
     }
 
     /// The region of a place.
-    fn region_of(&self, face: FaceId, barycentric: [f64; 3]) -> usize {
-        let range = &self.along[face.index()];
-        // The share of the face's area nearer to its first corner.
-        let along = 1.0 - barycentric[0];
+    fn region_of(&self, mesh: &SurfaceMesh, point: &SurfacePoint) -> usize {
+        let Leaves { first, depth } = self.of_face[point.face.index()];
+        let mut part = Part { corners: mesh.triangle(point.face), weights: point.barycentric };
+        let mut leaf = 0;
+        for _ in 0..depth {
+            let (half, second) = part.half();
+            part = half;
+            leaf = 2 * leaf + u32::from(second);
+        }
+        let range = &self.along[(first + leaf) as usize];
+        // The share of the leaf's area nearer to its first corner.
+        let along = 1.0 - part.weights[0];
         self.region_at(range.start + (range.end - range.start) * along * along)
     }
 
@@ -117,7 +190,7 @@ impl Regions {
             range
                 .map(|i| {
                     let point = &caught[i].sample.point;
-                    let region = self.region_of(point.face, point.barycentric);
+                    let region = self.region_of(mesh, point);
                     (region, mesh.locate(point).distance_squared(self.centroids[region]), i)
                 })
                 .collect::<Vec<_>>()
@@ -143,9 +216,8 @@ impl Regions {
     }
 }
 
-/// The centroid of the band of a face that lies between these shares of its area, seen from its first corner.
-fn band_middle(mesh: &SurfaceMesh, face: FaceId, shares: Range<f64>) -> DVec3 {
-    let [a, b, c] = mesh.triangle(face);
+/// The centroid of the band of a triangle that lies between these shares of its area, seen from its first corner.
+fn band_middle([a, b, c]: [DVec3; 3], shares: Range<f64>) -> DVec3 {
     // Shares grow like the square of the distance.
     let [p, q] = [shares.start, shares.end].map(|s| libm::sqrt(s.clamp(0.0, 1.0)));
     let along = if p + q > 0.0 { 2.0 / 3.0 * (p * p + p * q + q * q) / (p + q) } else { 0.0 };
@@ -163,7 +235,7 @@ fn cut(items: &mut [Item], start: f64) {
     let high = items.iter().fold(DVec3::NEG_INFINITY, |m, i| m.max(i.position));
     let extent = high - low;
     let axis = (1..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
-    let order = |a: &Item, b: &Item| a.position[axis].total_cmp(&b.position[axis]).then(a.face.cmp(&b.face));
+    let order = |a: &Item, b: &Item| a.position[axis].total_cmp(&b.position[axis]).then(a.id.cmp(&b.id));
     let middle = split_by_mass(items, order, |item| item.mass, border - start);
     let (below, above) = items.split_at_mut(middle);
     let between = start + below.iter().map(|i| i.mass).sum::<f64>();

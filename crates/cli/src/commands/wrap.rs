@@ -98,7 +98,7 @@ fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<
 
 fn summary(job: Job<'_>) -> Vec<String> {
     let Job { ground: Ground { input: Input { name, mesh, .. }, .. }, run, irregularity } = job;
-    let Irregularity { bound, refined, exact } = irregularity;
+    let Irregularity { bound, refined, exact, undecided } = irregularity;
     let Correction { projected, removed } = run.correction;
     let count = run.samples.len();
     let mut lines = vec![
@@ -109,7 +109,14 @@ fn summary(job: Job<'_>) -> Vec<String> {
             counted(run.strips.strips.len(), "strip"),
             run.d_m
         ),
-        format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact"),
+        if undecided > 1e-3 {
+            format!(
+                "irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} +- {:.3} exact",
+                0.5 * undecided
+            )
+        } else {
+            format!("irregularity R {bound:.3} by eq. 8, {refined:.3} refined, {exact:.3} exact")
+        },
         format!("open border {:.2} sqrt(area)", report::open_border(mesh.area(), run)),
         format!("corrected: {projected} projected, {removed} removed"),
     ];

@@ -171,7 +171,7 @@ fn weights_follow_a_texture_inside_large_faces() {
     // One quad under a picture of 32 x 32 texels, white but for a black disc.
     let folder = Folder::new();
     let size = 32_u32;
-    let from_middle = |x: f64, y: f64| ((x - 0.3).powi(2) + (y - 0.6).powi(2)).sqrt();
+    let from_middle = |x: f64, y: f64| glam::DVec2::new(x - 0.3, y - 0.6).length();
     let is_black = |x: f64, y: f64| from_middle(x, y) < 0.25;
     let mut texels = Vec::new();
     for row in 0..size {

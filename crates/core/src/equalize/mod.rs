@@ -33,7 +33,7 @@ use crate::sample::SurfacePoint;
 use balance::Item;
 use layout::{Due, Layout, Place, lay_out};
 use near::{Near, Site};
-use owners::{Cell, diagram, nearest};
+use owners::{Cell, diagram};
 use patches::Patches;
 use places::Spot;
 use relax::{Relaxed, relax};
@@ -84,6 +84,9 @@ pub struct Equalized {
     pub report: EqualizeReport,
 }
 
+/// Cells that spread more than before, and by more than this share, are no improvement: the points stay.
+const UNEVEN: f64 = 0.1;
+
 /// A point nearer than this many d_m to the centre of the block where it is due starts from where it is.
 const KEEP: f64 = 0.4;
 
@@ -120,7 +123,8 @@ pub fn equalize(
         };
         dues.iter().map(site).collect()
     };
-    let spread_before = spread(&nearest_cells(&layout, &sites(&|due| places[due.point as usize])));
+    let nearest = nearest_cells(&layout, &sites(&|due| places[due.point as usize]));
+    let spread_before = spread(&nearest);
     let start = sites(&|due| {
         let block = &layout.blocks[due.block as usize];
         let (own, centre) = (places[due.point as usize], block.centre.position);
@@ -142,6 +146,10 @@ pub fn equalize(
     if let Some(options) = &options.for_views {
         views::choose(mesh, scale.middle, &layout, &relaxed, &mut settled, options, progress);
     }
+    let masses: Vec<f64> = relaxed.diagram.cells.iter().map(|cell| cell.mass).collect();
+    if spread(&masses) > spread_before && spread(&masses) > UNEVEN {
+        return unmoved(points, &dues, nearest, spread_before);
+    }
     let mut moved = 0.0;
     let mut result = points.to_vec();
     let mut cells = vec![0.0; n];
@@ -161,6 +169,16 @@ pub fn equalize(
         moved: libm::sqrt(moved / n as f64) / d_m,
     };
     Equalized { points: result, cells, report }
+}
+
+/// The points as they were, with the cells that they have: where relaxation does not find its way, nothing is better.
+fn unmoved(points: &[SurfacePoint], dues: &[Due], nearest: Vec<f64>, spread: f64) -> Equalized {
+    let mut cells = vec![0.0; points.len()];
+    for (due, mass) in dues.iter().zip(nearest) {
+        cells[due.point as usize] = mass;
+    }
+    let report = EqualizeReport { spread_before: spread, spread_after: spread, moved: 0.0 };
+    Equalized { points: points.to_vec(), cells, report }
 }
 
 /// The masses of the cells of sites without weights.
@@ -192,7 +210,7 @@ fn items(
 fn settle(layout: &Layout, relaxed: &Relaxed) -> Vec<Option<Spot>> {
     let centroid = |cell: &Cell| (cell.mass > 0.0).then(|| cell.moment.position / cell.mass);
     let centroids: Vec<_> = relaxed.diagram.cells.iter().map(centroid).collect();
-    nearest(layout, &relaxed.near, &relaxed.sites, &centroids)
+    owners::nearest(layout, &relaxed.near, &relaxed.sites, &centroids)
 }
 
 /// Standard deviation over mean.

@@ -108,6 +108,10 @@ const HEAVY: f64 = 1.1;
 /// distance of the points.
 const FOOTHOLD: f64 = 0.3;
 
+/// Only where points have the same distance, up to this factor, may a site go over: beside a jump of the density all
+/// cells on one side are heavy for a while, and must not draw the points of the other.
+const ALIKE: f64 = 1.5;
+
 /// What is farther away than this many distances of the points has nothing to do with a cell.
 const SIGHT: f64 = 3.0;
 
@@ -129,7 +133,11 @@ fn regain(sites: &mut [Site], homes: &[Place], diagram: &Diagram, wanted: &[f64]
         let own = sites[i];
         near.clear();
         runs.within(places[i], SIGHT * own.distance, |j| sites[j].patch == own.patch, &mut near);
-        let heavy = near.iter().map(|&j| j as usize).filter(|&j| share(j) > HEAVY && !halved[j]);
+        let alike = |j: usize| {
+            let ratio = sites[j].distance / own.distance;
+            (1.0 / ALIKE..=ALIKE).contains(&ratio)
+        };
+        let heavy = near.iter().map(|&j| j as usize).filter(|&j| share(j) > HEAVY && !halved[j] && alike(j));
         let nearest = heavy.min_by(|&a, &b| {
             places[a].distance_squared(places[i]).total_cmp(&places[b].distance_squared(places[i]))
         });

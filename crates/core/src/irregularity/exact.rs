@@ -42,32 +42,55 @@ enum Verdict {
     Undecided(Piece),
 }
 
-/// The area of the zone over the total area, at most 1. `open` holds the open edges of each strip.
-pub(super) fn share(strips: &Strips, open: &[Vec<OpenEdge>], d_m: f64) -> f64 {
+/// So many times at most pieces are held against edges.
+const MOST_LOOKS: usize = 1 << 26;
+
+/// Shares of the total area.
+pub(super) struct Exact {
+    /// The zone, at most 1.
+    pub(super) zone: f64,
+    /// What was left undecided; half of it counts.
+    pub(super) undecided: f64,
+}
+
+/// The area of the zone over the total area. `open` holds the open edges of each strip.
+pub(super) fn share(strips: &Strips, open: &[Vec<OpenEdge>], d_m: f64) -> Exact {
     let total = total_area(strips);
     let mut covered = 0.0;
+    let mut unknown = 0.0;
     let mut undecided = Vec::new();
-    for (area, pieces) in map(strips.strips.len(), |s| judge_strip(&strips.strips[s], &open[s], d_m)) {
-        covered += area;
-        undecided.extend(pieces);
+    for (s, judged) in
+        map(strips.strips.len(), |s| judge_strip(&strips.strips[s], &open[s], d_m)).into_iter().enumerate()
+    {
+        match judged {
+            Some((area, pieces)) => {
+                covered += area;
+                undecided.extend(pieces);
+            }
+            None => unknown += strips.strips[s].area,
+        }
     }
     // Every undecided face may leave undecided the same share of its own area.
     let left: f64 = undecided.iter().map(|piece| area(&piece.corners)).sum();
     let allowed = UNDECIDED * total / left;
-    covered += map(undecided.len(), |i| refine(&undecided[i], d_m, allowed)).into_iter().sum::<f64>();
-    (covered / total).min(1.0)
+    let looks = MOST_LOOKS / undecided.len().max(1);
+    for (part, left) in map(undecided.len(), |i| refine(&undecided[i], d_m, allowed, looks)) {
+        covered += part;
+        unknown += left;
+    }
+    Exact { zone: ((covered + 0.5 * unknown) / total).min(1.0), undecided: unknown / total }
 }
 
-/// The area that is known to lie in the zone, and the faces of which that is not known.
-fn judge_strip(strip: &Strip, open: &[OpenEdge], d_m: f64) -> (f64, Vec<Piece>) {
+/// The area that is known to lie in the zone, and the faces of which that is not known; `None` if nothing is known.
+fn judge_strip(strip: &Strip, open: &[OpenEdge], d_m: f64) -> Option<(f64, Vec<Piece>)> {
     if open.is_empty() {
-        return (0.0, Vec::new());
+        return Some((0.0, Vec::new()));
     }
     let places: Vec<usize> = open.iter().map(|e| e.place).collect();
     let sources = Sources::new(open.iter().map(|e| Segment { from: e.from, to: e.to }).collect());
     let mut covered = 0.0;
     let mut undecided = Vec::new();
-    let near = flood(strip, &places, &sources, d_m);
+    let near = flood(strip, &places, &sources, d_m)?;
     let judged = map_chunks(near.len(), CHUNK, |range| {
         let mut covered = 0.0;
         let mut undecided = Vec::new();
@@ -91,7 +114,7 @@ fn judge_strip(strip: &Strip, open: &[OpenEdge], d_m: f64) -> (f64, Vec<Piece>) 
         covered += part;
         undecided.extend(pieces);
     }
-    (covered, undecided)
+    Some((covered, undecided))
 }
 
 fn judge(mut piece: Piece, d_m: f64) -> Verdict {
@@ -114,14 +137,16 @@ fn judge(mut piece: Piece, d_m: f64) -> Verdict {
     known.map_or(Verdict::Undecided(piece), Verdict::Covered)
 }
 
-/// The area of the part of an undecided triangle in the zone. At most the share `allowed` of the triangle is
-/// decided by counting half.
-fn refine(whole: &Piece, d_m: f64, allowed: f64) -> f64 {
+/// The area of the part of an undecided triangle that is known to be in the zone, and the area that stays undecided: at
+/// most the share `allowed` of the triangle, if that takes no more than about so many looks at edges.
+fn refine(whole: &Piece, d_m: f64, allowed: f64, looks: usize) -> (f64, f64) {
     let mut covered = 0.0;
     let mut level: Vec<Piece> = cut(whole).into();
     let mut piece_area = 0.25 * area(&whole.corners);
     let mut allowed_pieces = 4.0 * allowed;
+    let mut looked = 0;
     for _ in 0..DEEPEST {
+        looked += level.iter().map(|piece| piece.edges.len()).sum::<usize>();
         let mut undecided = Vec::new();
         for piece in level {
             match judge(piece, d_m) {
@@ -130,14 +155,14 @@ fn refine(whole: &Piece, d_m: f64, allowed: f64) -> f64 {
             }
         }
         level = undecided;
-        if level.len() as f64 <= allowed_pieces {
+        if level.len() as f64 <= allowed_pieces || looked > looks {
             break;
         }
         level = level.iter().flat_map(cut).collect();
         piece_area *= 0.25;
         allowed_pieces *= 4.0;
     }
-    covered + 0.5 * piece_area * level.len() as f64
+    (covered, piece_area * level.len() as f64)
 }
 
 /// Four triangles of half the size.

@@ -101,9 +101,17 @@ impl Queue {
     }
 }
 
+/// So many arrivals of sources are followed for each face, and [`FEW_ARRIVALS`] more.
+const ARRIVALS: usize = 256;
+
+/// See [`ARRIVALS`].
+const FEW_ARRIVALS: usize = 1 << 17;
+
 /// For each face of the strip the sources nearer than `d_m` to it. `open` holds, for each open edge, its place in
 /// the strip's border; cuts that are not among them are crossed.
-pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) -> Vec<Near> {
+///
+/// `None` if there are too many near too many faces, as on needles that lie side by side within d_m.
+pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) -> Option<Vec<Near>> {
     let sides = Sides::new(strip);
     let neighbours = neighbours(strip, &sides, open);
     let count = strip.corners.len();
@@ -114,6 +122,7 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
     let mut farthest = vec![f64::INFINITY; count];
     // The same for each side of each face and the sources that reached that face.
     let mut farthest_side = vec![[f64::INFINITY; 3]; count];
+    let most = FEW_ARRIVALS + ARRIVALS * count;
     let mut queue = Queue::new(d_m.min(strip.extent.length()));
     for (&place, source) in open.iter().zip(0u32..) {
         let edge = &strip.border[place];
@@ -143,7 +152,10 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
         if known.is_some() {
             continue;
         }
-        let place = u32::try_from(arrived.len()).expect("arrivals fit in 32 bits");
+        if arrived.len() >= most {
+            return None;
+        }
+        let place = u32::try_from(arrived.len()).ok()?;
         arrived.push((source, latest[f]));
         latest[f] = Some(place);
         let segment = sources.segment(source);
@@ -165,9 +177,8 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
             }
         }
     }
-    (0..count)
-        .map(|f| if farthest[f] <= d_m { Near::Whole } else { Near::Sources(linked(latest[f], &arrived)) })
-        .collect()
+    let near = |f| if farthest[f] <= d_m { Near::Whole } else { Near::Sources(linked(latest[f], &arrived)) };
+    Some((0..count).map(near).collect())
 }
 
 /// The sides of a strip's faces by the planar vertices at their ends.

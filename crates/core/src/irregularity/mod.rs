@@ -33,9 +33,11 @@ pub struct Irregularity {
     pub bound: f64,
     /// The estimate of the cases a to c.
     pub refined: f64,
-    /// The area of the band of width d_m along the open border over the total area: never above 1. At most
-    /// 1e-4 of the total area is left undecided and counted half.
+    /// The area of the band of width d_m along the open border over the total area: never above 1.
     pub exact: f64,
+    /// The share of the area of which `exact` leaves open whether it lies in the band; it counts half. At most 1e-4, but
+    /// where needles lie side by side and finding out would take too long.
+    pub undecided: f64,
 }
 
 /// The three estimates of R at mean spacing `d_m`, where cuts with a gap of at most `tolerance` count as closed;
@@ -46,13 +48,15 @@ pub struct Irregularity {
 pub fn irregularity(strips: &Strips, d_m: f64, tolerance: f64) -> Irregularity {
     let total = total_area(strips);
     if total <= 0.0 {
-        return Irregularity { bound: 0.0, refined: 0.0, exact: 0.0 };
+        return Irregularity { bound: 0.0, refined: 0.0, exact: 0.0, undecided: 0.0 };
     }
     let open: Vec<_> = strips.strips.iter().map(|strip| open::open_edges(strip, tolerance)).collect();
+    let exact = exact::share(strips, &open, d_m);
     Irregularity {
         bound: open.iter().map(|edges| bound::zone(edges, d_m)).sum::<f64>() / total,
         refined: open.iter().map(|edges| refined::zone(edges, d_m)).sum::<f64>() / total,
-        exact: exact::share(strips, &open, d_m),
+        exact: exact.zone,
+        undecided: exact.undecided,
     }
 }
 

@@ -293,7 +293,7 @@ fn where_the_border_touches_itself_each_corner_has_its_own_angle() {
 
 #[test]
 fn nothing_is_open_or_there_is_nothing() {
-    let none = Irregularity { bound: 0.0, refined: 0.0, exact: 0.0 };
+    let none = Irregularity { bound: 0.0, refined: 0.0, exact: 0.0, undecided: 0.0 };
     assert_eq!(irregularity(&Strips { strips: Vec::new(), places: Vec::new() }, 1.0, 0.0), none);
     assert_eq!(irregularity(&alone(rectangle(1.0, 1.0)), 1.0, f64::INFINITY), none);
 }
