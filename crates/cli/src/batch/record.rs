@@ -124,7 +124,7 @@ impl Source {
 impl Ratios {
     /// Those that are numbers.
     pub(crate) fn of(irregularity: &Irregularity) -> Self {
-        let Irregularity { bound, refined, exact } = *irregularity;
+        let Irregularity { bound, refined, exact, undecided: _ } = *irregularity;
         Self { bound: number(bound), refined: number(refined), exact: number(exact) }
     }
 }
