@@ -11,6 +11,7 @@ use glam::DVec3;
 use crate::correct::Corrected;
 use crate::density::Density;
 use crate::halves::split_by_mass;
+use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::sample::SurfacePoint;
@@ -26,10 +27,20 @@ struct Item {
 }
 
 /// The largest mass of a leaf, in points.
-const LEAF: f64 = 0.25;
+const LEAF: f64 = 0.5;
 
 /// No face is halved more often than this.
 const DEEPEST: u32 = 24;
+
+/// Halves of a triangle are as slender as it is, so one with a longest side whose square is so many times the area is not
+/// halved: regions are bands across it.
+const SLENDER: f64 = 32.0;
+
+fn is_slender(mesh: &SurfaceMesh, face: FaceId) -> bool {
+    let [a, b, c] = mesh.triangle(face);
+    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    longest > SLENDER * mesh.face_area(face)
+}
 
 /// The leaves of a face: the face, halved across its longest side until no part holds more than [`LEAF`].
 #[derive(Clone, Copy, Debug)]
@@ -100,7 +111,11 @@ impl Regions {
         let mut corners = Vec::with_capacity(mesh.face_count());
         for face in mesh.topology().face_ids() {
             let mass = density.face_mass(mesh, face) * scale;
-            let depth = (libm::ceil(libm::log2((mass / LEAF).max(1.0))) as u32).min(DEEPEST);
+            let depth = if is_slender(mesh, face) {
+                0
+            } else {
+                (libm::ceil(libm::log2((mass / LEAF).max(1.0))) as u32).min(DEEPEST)
+            };
             of_face.push(Leaves { first: corners.len() as u32, depth });
             let items = &mut items[components.of_face[face.index()] as usize];
             leaves(mesh.triangle(face), depth, &mut |leaf| {
