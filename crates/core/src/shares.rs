@@ -16,13 +16,13 @@ use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::sample::SurfacePoint;
 
-/// A leaf, or a component, as a mass in one place.
+/// A leaf, a face or a component as a mass in one place.
 #[derive(Clone, Copy, Debug)]
 struct Item {
     position: DVec3,
     /// In points.
     mass: f64,
-    /// Which leaf or component.
+    /// Which leaf, face or component.
     id: u32,
 }
 
@@ -117,17 +117,10 @@ impl Regions {
                 (libm::ceil(libm::log2((mass / LEAF).max(1.0))) as u32).min(DEEPEST)
             };
             of_face.push(Leaves { first: corners.len() as u32, depth });
-            let items = &mut items[components.of_face[face.index()] as usize];
-            leaves(mesh.triangle(face), depth, &mut |leaf| {
-                let [a, b, c] = leaf;
-                let position = a / 3.0 + b / 3.0 + c / 3.0;
-                items.push(Item {
-                    position,
-                    mass: mass / f64::from(1u32 << depth),
-                    id: corners.len() as u32,
-                });
-                corners.push(leaf);
-            });
+            let [a, b, c] = mesh.triangle(face);
+            let position = a / 3.0 + b / 3.0 + c / 3.0;
+            items[components.of_face[face.index()] as usize].push(Item { position, mass, id: face.0 });
+            leaves([a, b, c], depth, &mut |leaf| corners.push(leaf));
         }
         // Components are cut from each other first, so that their shares are right to within a point.
         let mut row: Vec<Item> = (0..)
@@ -152,21 +145,33 @@ impl Regions {
         let mut along = vec![0.0..0.0; corners.len()];
         // The moments and masses of the regions.
         let mut sums = vec![(DVec3::ZERO, 0.0); n];
+        let mut parts = Vec::new();
         for (items, start) in items.iter().zip(starts) {
             let mut before = start;
-            for item in items {
-                let range = before..before + item.mass;
-                before = range.end;
-                let (first, end) = ((range.start as usize).min(last), (range.end as usize).min(last) + 1);
-                for (region, sum) in (first..end).zip(&mut sums[first..end]) {
-                    let from = range.start.max(region as f64);
-                    let shared = (range.end.min(region as f64 + 1.0) - from).max(0.0);
-                    let mass = item.mass.max(f64::MIN_POSITIVE);
-                    let from = (from - range.start) / mass;
-                    sum.0 += band_middle(corners[item.id as usize], from..from + shared / mass) * shared;
-                    sum.1 += shared;
+            for face in items {
+                // Large faces are cut from each other before they are cut themselves, so that their shares are right.
+                let Leaves { first, depth } = of_face[face.id as usize];
+                let mass = face.mass / f64::from(1u32 << depth);
+                parts.clear();
+                parts.extend((first..first + (1 << depth)).map(|id| {
+                    let [a, b, c] = corners[id as usize];
+                    Item { position: a / 3.0 + b / 3.0 + c / 3.0, mass, id }
+                }));
+                cut(&mut parts, before);
+                for item in &parts {
+                    let range = before..before + item.mass;
+                    before = range.end;
+                    let (first, end) = ((range.start as usize).min(last), (range.end as usize).min(last) + 1);
+                    for (region, sum) in (first..end).zip(&mut sums[first..end]) {
+                        let from = range.start.max(region as f64);
+                        let shared = (range.end.min(region as f64 + 1.0) - from).max(0.0);
+                        let mass = item.mass.max(f64::MIN_POSITIVE);
+                        let from = (from - range.start) / mass;
+                        sum.0 += band_middle(corners[item.id as usize], from..from + shared / mass) * shared;
+                        sum.1 += shared;
+                    }
+                    along[item.id as usize] = range;
                 }
-                along[item.id as usize] = range;
             }
         }
         let middle = |(moment, mass): (DVec3, f64)| if mass > 0.0 { moment / mass } else { moment };

@@ -152,7 +152,7 @@ fn the_report_has_its_keys() {
         ["area", "border_edges", "components", "faces", "repaired", "vertices"]
     );
     assert_eq!(keys(&report["points"]), ["count", "d_m", "projected", "removed"]);
-    assert_eq!(keys(&report["irregularity"]), ["bound", "exact", "refined"]);
+    assert_eq!(keys(&report["irregularity"]), ["bound", "exact", "refined", "undecided"]);
     assert_eq!(
         report["options"],
         json!({
