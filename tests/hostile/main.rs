@@ -13,6 +13,7 @@ mod soups;
 
 mod files;
 mod meshes;
+mod samples;
 mod table;
 
 use std::fs;

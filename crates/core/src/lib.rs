@@ -83,6 +83,7 @@ mod sample;
 pub mod segment;
 mod selection;
 pub mod sequence;
+mod sets;
 mod shares;
 mod short;
 pub mod spatial;

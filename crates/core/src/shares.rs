@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::correct::Corrected;
 use crate::density::Density;
+use crate::geometry::triangle::longest_side;
 use crate::halves::split_by_mass;
 use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
@@ -37,8 +38,7 @@ const DEEPEST: u32 = 24;
 const SLENDER: f64 = 32.0;
 
 fn is_slender(mesh: &SurfaceMesh, face: FaceId) -> bool {
-    let [a, b, c] = mesh.triangle(face);
-    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    let (_, longest) = longest_side(mesh.triangle(face));
     longest > SLENDER * mesh.face_area(face)
 }
 
@@ -61,10 +61,8 @@ struct Part {
 impl Part {
     /// Its half that holds the place, and whether that is the second one.
     fn half(&self) -> (Self, bool) {
-        let [a, b, c] = self.corners;
-        let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
-        let long = (0..3).fold(0, |best, side| if sides[side] > sides[best] { side } else { best });
-        let (from, to, apex) = (long, (long + 1) % 3, (long + 2) % 3);
+        let (from, _) = longest_side(self.corners);
+        let (to, apex) = ((from + 1) % 3, (from + 2) % 3);
         let middle = (self.corners[from] + self.corners[to]) * 0.5;
         let second = self.weights[to] > self.weights[from];
         let (kept, gone) = if second { (to, from) } else { (from, to) };
@@ -82,10 +80,8 @@ fn leaves(corners: [DVec3; 3], depth: u32, emit: &mut impl FnMut([DVec3; 3])) {
         emit(corners);
         return;
     }
-    let [a, b, c] = corners;
-    let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
-    let long = (0..3).fold(0, |best, side| if sides[side] > sides[best] { side } else { best });
-    let (from, to, apex) = (corners[long], corners[(long + 1) % 3], corners[(long + 2) % 3]);
+    let (first, _) = longest_side(corners);
+    let [from, to, apex] = [0, 1, 2].map(|turn| corners[(first + turn) % 3]);
     let middle = (from + to) * 0.5;
     leaves([from, middle, apex], depth - 1, emit);
     leaves([to, middle, apex], depth - 1, emit);

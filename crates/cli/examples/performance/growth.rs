@@ -17,16 +17,22 @@ pub(crate) fn rows(bench: &mut Bench) -> Outcome<Vec<Row>> {
     Ok(rows)
 }
 
+/// A number, as it is shown.
+type Size = (u32, &'static str);
+
+const SIZES: [Size; 3] = [(100_000, "100,000"), (1_000_000, "1,000,000"), (10_000_000, "10,000,000")];
+
+/// Each size with the one ten times as large.
+fn tenfold(bench: &Bench) -> impl Iterator<Item = [Size; 2]> + use<> {
+    let most = if bench.large { 2 } else { 1 };
+    SIZES.windows(2).map(|pair| [pair[0], pair[1]]).take(most)
+}
+
 fn of_points(bench: &Bench) -> Outcome<Vec<Row>> {
-    let mut sizes = vec![(100_000, "100,000"), (1_000_000, "1,000,000")];
-    if bench.large {
-        sizes.push((10_000_000, "10,000,000"));
-    }
     let mut rows = Vec::new();
-    for pair in sizes.windows(2) {
-        let [(fewer, fewer_shown), (more, more_shown)] = [pair[0], pair[1]];
+    for [(fewer, fewer_shown), (more, more_shown)] in tenfold(bench) {
         let once = |count| {
-            let (made, seconds) = timed(|| all_stages(&bench.mesh, count, Options::default()));
+            let (made, seconds) = timed(|| all_stages(&bench.mesh, count as usize, Options::default()));
             made.map(|_| seconds)
         };
         let [more, fewer] = interleaved(bench.rounds, [&mut || once(more), &mut || once(fewer)])?;
@@ -43,13 +49,8 @@ fn of_points(bench: &Bench) -> Outcome<Vec<Row>> {
 
 /// Scans, whose triangles are as irregular at every size.
 fn of_triangles(bench: &Bench) -> Outcome<Vec<Row>> {
-    let mut sizes = vec![(100_000, "100,000"), (1_000_000, "1,000,000")];
-    if bench.large {
-        sizes.push((10_000_000, "10,000,000"));
-    }
     let mut rows = Vec::new();
-    for pair in sizes.windows(2) {
-        let [(fewer, fewer_shown), (more, more_shown)] = [pair[0], pair[1]];
+    for [(fewer, fewer_shown), (more, more_shown)] in tenfold(bench) {
         let (small, large) = (shapes::scan_like(1, fewer), shapes::scan_like(1, more));
         let stages = |soup: &PolygonSoup| -> Outcome<[f64; 2]> {
             let (made, check) = timed(|| SurfaceMesh::from_soup(soup, &CheckOptions::default()));

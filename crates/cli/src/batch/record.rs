@@ -69,6 +69,9 @@ pub(crate) struct Ratios {
     pub(crate) bound: Option<f64>,
     pub(crate) refined: Option<f64>,
     pub(crate) exact: Option<f64>,
+    /// How much of the exact one is not known.
+    #[serde(default)]
+    pub(crate) undecided: Option<f64>,
 }
 
 /// Why there are no points.
@@ -124,8 +127,13 @@ impl Source {
 impl Ratios {
     /// Those that are numbers.
     pub(crate) fn of(irregularity: &Irregularity) -> Self {
-        let Irregularity { bound, refined, exact, undecided: _ } = *irregularity;
-        Self { bound: number(bound), refined: number(refined), exact: number(exact) }
+        let Irregularity { bound, refined, exact, undecided } = *irregularity;
+        Self {
+            bound: number(bound),
+            refined: number(refined),
+            exact: number(exact),
+            undecided: number(undecided),
+        }
     }
 }
 
@@ -156,7 +164,8 @@ pub(crate) mod tests {
 
     /// A record of a mesh that went well.
     pub(crate) fn done(output: &str, options: &str, at: u64) -> Record {
-        let irregularity = Ratios { bound: Some(0.1 + 0.2), refined: Some(1e-300), exact: None };
+        let irregularity =
+            Ratios { bound: Some(0.1 + 0.2), refined: Some(1e-300), exact: None, undecided: Some(0.0) };
         Record {
             input: format!("in/{output}"),
             output: Some(output.to_owned()),

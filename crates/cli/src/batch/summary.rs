@@ -24,6 +24,7 @@ struct Row<'a> {
     irregularity_bound: Option<f64>,
     irregularity_refined: Option<f64>,
     irregularity_exact: Option<f64>,
+    irregularity_undecided: Option<f64>,
     eta: Option<f64>,
     repairs: String,
     error_kind: Option<&'static str>,
@@ -32,7 +33,7 @@ struct Row<'a> {
 }
 
 /// The names of the columns, which a table without rows has too.
-const COLUMNS: [&str; 18] = [
+const COLUMNS: [&str; 19] = [
     "input",
     "output",
     "status",
@@ -46,6 +47,7 @@ const COLUMNS: [&str; 18] = [
     "irregularity_bound",
     "irregularity_refined",
     "irregularity_exact",
+    "irregularity_undecided",
     "eta",
     "repairs",
     "error_kind",
@@ -94,6 +96,7 @@ fn row<'a>(task: &'a Task, record: Option<&'a Record>) -> Row<'a> {
             irregularity_bound: made.irregularity.bound,
             irregularity_refined: made.irregularity.refined,
             irregularity_exact: made.irregularity.exact,
+            irregularity_undecided: made.irregularity.undecided,
             eta: made.eta,
             repairs: made.repairs.iter().fold(String::new(), |mut text, (name, count)| {
                 let _ = write!(text, "{}{name}={count}", if text.is_empty() { "" } else { " " });
@@ -126,9 +129,9 @@ mod tests {
         let rows = tasks.iter().zip([Some(&records[0]), Some(&records[1]), None]);
         let text = String::from_utf8(csv(rows).unwrap()).unwrap();
         let expected = "\
-            \"in/a,b.obj\",\"a,b.ply\",done,4,4,1,0.3333333333333333,2,5,0.25,0.30000000000000004,1e-300,,,welded_vertices=2,,,0.125\n\
-            x,\"a,b.ply\",failed,,,,,,,,,,,,,format,\"no \"\"mesh\"\",\nat all\",0.125\n\
-            y,\"a,b.ply\",pending,,,,,,,,,,,,,,,\n";
+            \"in/a,b.obj\",\"a,b.ply\",done,4,4,1,0.3333333333333333,2,5,0.25,0.30000000000000004,1e-300,,0.0,,welded_vertices=2,,,0.125\n\
+            x,\"a,b.ply\",failed,,,,,,,,,,,,,,format,\"no \"\"mesh\"\",\nat all\",0.125\n\
+            y,\"a,b.ply\",pending,,,,,,,,,,,,,,,,\n";
         assert_eq!(text, format!("{}\n{expected}", COLUMNS.join(",")));
     }
 

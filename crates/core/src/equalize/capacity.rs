@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::near::Site;
 use super::owners::{Border, Diagram};
 use crate::parallel;
+use crate::sets::Sets;
 
 /// Changes of the weights that bring the cells' masses to `wanted`, to first order, when the sites move by `moves` at
 /// the same time.
@@ -30,28 +31,19 @@ pub(super) fn weight_steps(diagram: &Diagram, sites: &[Site], moves: &[DVec3], w
 /// Takes its mean from each part of the cells that no border joins to another part. A patch may fall into parts whose
 /// masses are no whole numbers of cells; no weights mend that, and conjugate gradients would run away from it.
 fn level_parts(missing: &mut [f64], borders: &[Border]) {
-    let mut parents: Vec<u32> = (0..missing.len() as u32).collect();
+    let mut parts = Sets::new(missing.len());
     for border in borders {
-        let (a, b) = (root(&mut parents, border.a), root(&mut parents, border.b));
-        parents[a.max(b) as usize] = a.min(b);
+        parts.join(border.a, border.b);
     }
     let mut sums = vec![(0.0, 0.0); missing.len()];
     for (i, &value) in (0..).zip(missing.iter()) {
-        let part = &mut sums[root(&mut parents, i) as usize];
+        let part = &mut sums[parts.root(i) as usize];
         *part = (part.0 + value, part.1 + 1.0);
     }
     for (i, value) in (0..).zip(missing.iter_mut()) {
-        let (sum, count) = sums[root(&mut parents, i) as usize];
+        let (sum, count) = sums[parts.root(i) as usize];
         *value -= sum / count;
     }
-}
-
-fn root(parents: &mut [u32], mut i: u32) -> u32 {
-    while parents[i as usize] != i {
-        parents[i as usize] = parents[parents[i as usize] as usize];
-        i = parents[i as usize];
-    }
-    i
 }
 
 /// A symmetric matrix with rows that sum to zero, in rows.

@@ -155,7 +155,7 @@ impl Owners for Nearest<'_> {
         let [a, b, c] = self.layout.corners(tile);
         let least = self.best[site].map_or(f64::INFINITY, |(least, _)| least);
         // A tile whose nearest corner is farther by more than its longest side has no nearer place.
-        let side = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+        let (_, side) = triangle::longest_side([a, b, c]);
         let corner = a.distance_squared(wanted);
         if corner > 2.0 * (least + side) {
             return;

@@ -12,6 +12,7 @@ use glam::DVec3;
 use super::tiles::cell_key;
 use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
+use crate::sets::Sets;
 
 /// Neighbours whose normals are at least this far apart (squared distance; 4 sin^2(15 degrees)) meet in a crease.
 const CREASE: f64 = 0.267_949_192_431_122_7;
@@ -165,28 +166,5 @@ fn merge_small(mesh: &SurfaceMesh, strip_of_face: &[StripId], mass: &[f64], each
         if weight[joined as usize] < least(curved[joined as usize]) {
             light.push(Reverse((weight[joined as usize].to_bits(), joined)));
         }
-    }
-}
-
-/// Disjoint sets; the root of a set is its smallest member.
-struct Sets(Vec<u32>);
-
-impl Sets {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    fn root(&mut self, mut x: u32) -> u32 {
-        while self.0[x as usize] != x {
-            self.0[x as usize] = self.0[self.0[x as usize] as usize];
-            x = self.0[x as usize];
-        }
-        x
-    }
-
-    fn join(&mut self, a: u32, b: u32) -> u32 {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-        a.min(b)
     }
 }

@@ -202,14 +202,12 @@ impl Cut {
         tile: &mut impl FnMut([Corner; 3]) -> Option<(Key, Tile)>,
         first: u32,
     ) {
-        let [a, b, c] = corners.map(|c| c.place.position);
-        let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
-        let long = (0..3).max_by(|&i, &j| sides[i].total_cmp(&sides[j])).unwrap_or(0);
-        if sides[long] <= longest * longest {
+        let (start, squared) = triangle::longest_side(corners.map(|c| c.place.position));
+        if squared <= longest * longest {
             self.tiles.extend(tile(corners));
             return;
         }
-        let (from, to, apex) = (corners[long], corners[(long + 1) % 3], corners[(long + 2) % 3]);
+        let [from, to, apex] = [0, 1, 2].map(|turn| corners[(start + turn) % 3]);
         let middle = self.middle(first, &from, &to);
         self.split([from, middle, apex], longest, tile, first);
         self.split([middle, to, apex], longest, tile, first);

@@ -33,6 +33,14 @@ pub fn flatten(a: DVec3, b: DVec3, c: DVec3) -> (f64, f64, f64) {
     (length, ac.dot(ab) / length, ab.cross(ac).length() / length)
 }
 
+/// Its first longest side, as the number of the corner that the side starts at, and the square of its length.
+#[inline]
+pub fn longest_side([a, b, c]: [DVec3; 3]) -> (usize, f64) {
+    let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+    let first = (1..3).fold(0, |best, side| if sides[side] > sides[best] { side } else { best });
+    (first, sides[first])
+}
+
 /// A triangle whose doubled area is less than this part of the square over its longest side is a needle.
 const NEEDLE: f64 = 1e-6;
 
@@ -40,7 +48,7 @@ const NEEDLE: f64 = 1e-6;
 /// Detection, 2005, section 5.1.5); never negative, sum 1. In needles, a million times as long as high or longer, where
 /// areas have no digits left, at most their height from the nearest one.
 pub fn nearest(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> [f64; 3] {
-    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
+    let (_, longest) = longest_side([a, b, c]);
     if area_vector(a, b, c).length_squared() < (NEEDLE * longest) * (NEEDLE * longest) {
         return nearest_in_needle([a, b, c], p);
     }

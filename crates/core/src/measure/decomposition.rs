@@ -8,6 +8,7 @@ use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::progress::Progress;
 use crate::sample::SurfacePoint;
+use crate::sets::Sets;
 use crate::unfold::Strips;
 
 /// Into how many parts sample figures fall.
@@ -222,9 +223,10 @@ pub fn surface_bound(degree: usize, planar: f64, domain_points: usize, points: u
     degree as f64 * planar * domain_points as f64 / points as f64
 }
 
-/// Faces added ring by ring and joined: union-find with path halving.
+/// Faces added ring by ring and joined.
 struct Parts {
-    parent: Vec<u32>,
+    sets: Sets,
+    is_added: Vec<bool>,
     count: usize,
     /// For each root the share of points less the share of area of its part.
     excess: Vec<f64>,
@@ -232,12 +234,15 @@ struct Parts {
     roots: Vec<u32>,
 }
 
-/// A face that was not added yet.
-const ABSENT: u32 = u32::MAX;
-
 impl Parts {
     fn new(faces: usize) -> Self {
-        Self { parent: vec![ABSENT; faces], count: 0, excess: vec![0.0; faces], roots: Vec::new() }
+        Self {
+            sets: Sets::new(faces),
+            is_added: vec![false; faces],
+            count: 0,
+            excess: vec![0.0; faces],
+            roots: Vec::new(),
+        }
     }
 
     /// Adds the faces of a ring, each with its excess, and joins what lies joined in the plane.
@@ -256,39 +261,29 @@ impl Parts {
     }
 
     fn add(&mut self, face: FaceId, excess: f64) {
-        self.parent[face.index()] = face.0;
+        self.is_added[face.index()] = true;
         self.excess[face.index()] = excess;
         self.roots.push(face.0);
         self.count += 1;
     }
 
-    fn root(&mut self, mut face: u32) -> u32 {
-        while self.parent[face as usize] != face {
-            let above = self.parent[self.parent[face as usize] as usize];
-            self.parent[face as usize] = above;
-            face = above;
-        }
-        face
-    }
-
     /// Joins the parts of two faces; nothing happens while one of them is absent.
     fn join(&mut self, a: u32, b: u32) {
-        if self.parent[a as usize] == ABSENT || self.parent[b as usize] == ABSENT {
+        if !self.is_added[a as usize] || !self.is_added[b as usize] {
             return;
         }
-        let (a, b) = (self.root(a), self.root(b));
+        let (a, b) = (self.sets.root(a), self.sets.root(b));
         if a != b {
-            let (low, high) = (a.min(b), a.max(b));
-            self.parent[high as usize] = low;
-            self.excess[low as usize] += self.excess[high as usize];
+            let joined = self.sets.join(a, b);
+            self.excess[joined as usize] += self.excess[a.max(b) as usize];
             self.count -= 1;
         }
     }
 
     /// The largest |excess| of a part; NaN if one is NaN.
     fn largest(&mut self) -> f64 {
-        let Self { parent, roots, excess, .. } = self;
-        roots.retain(|&face| parent[face as usize] == face);
+        let Self { sets, roots, excess, .. } = self;
+        roots.retain(|&face| sets.is_root(face));
         roots
             .iter()
             .map(|&face| excess[face as usize].abs())

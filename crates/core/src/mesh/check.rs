@@ -286,7 +286,7 @@ impl Faces {
 /// Whether the triangle has an area beyond rounding, and a normal.
 fn has_area(a: DVec3, b: DVec3, c: DVec3) -> bool {
     let vector = triangle::area_vector(a, b, c);
-    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt();
+    let longest = triangle::longest_side([a, b, c]).1.sqrt();
     let coordinate = a.abs().max(b.abs()).max(c.abs()).max_element();
     // Twice the area is the longest side times the height over it. Its square must not be denormal, for the length
     // is taken from it.

@@ -8,6 +8,7 @@ use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::segment::Segment;
+use crate::sets::Sets;
 
 /// Two copies of a vertex nearer than this, relative to the strip's extent, are one: rounding moved them apart, not
 /// the surface's curvature.
@@ -88,7 +89,7 @@ pub(super) fn twins(
 pub(super) fn close_seams(planar: &mut Planar, twins: &[Option<u32>]) {
     let extent = planar.vertices.iter().fold(0.0_f64, |m, v| m.max(v.abs().max_element()));
     let tolerance = COINCIDENT * extent;
-    let mut joined: Vec<u32> = (0..planar.vertices.len() as u32).collect();
+    let mut joined = Sets::new(planar.vertices.len());
     let mut any = false;
     for (side, twin) in (0u32..).zip(twins) {
         let Some(twin) = twin.filter(|twin| side < *twin) else { continue };
@@ -99,26 +100,18 @@ pub(super) fn close_seams(planar: &mut Planar, twins: &[Option<u32>]) {
             if a == b {
                 continue;
             }
-            let (a, b) = (root(&mut joined, a), root(&mut joined, b));
+            let (a, b) = (joined.root(a), joined.root(b));
             if a != b && planar.vertices[a as usize].distance(planar.vertices[b as usize]) <= tolerance {
-                joined[a.max(b) as usize] = a.min(b);
+                joined.join(a, b);
                 any = true;
             }
         }
     }
     if any {
         for v in planar.corners.iter_mut().flatten() {
-            *v = root(&mut joined, *v);
+            *v = joined.root(*v);
         }
     }
-}
-
-fn root(joined: &mut [u32], mut v: u32) -> u32 {
-    while joined[v as usize] != v {
-        joined[v as usize] = joined[joined[v as usize] as usize];
-        v = joined[v as usize];
-    }
-    v
 }
 
 /// Turns the strip so that the square around it is small and moves it so that the box around it starts at (0, 0).
