@@ -194,7 +194,7 @@ proptest! {
         let points = DomainPoints::scatter(&domain, &sequence, COUNT, shift);
         let wrapping = wrap(&strips, &domain, &points);
         let mut caught = vec![0; all.len()];
-        for wrapped in &wrapping.strips[0] {
+        for wrapped in wrapping.points_of(&strips, &domain, &points, StripId(0)) {
             caught[wrapped.index as usize] += 1;
             let (_, laid) = strips.lay_point(&wrapped.point);
             prop_assert!((laid + offset_place).distance(wrapped.place) <= 1e-9 * domain.side);
@@ -236,7 +236,7 @@ proptest! {
         let count = 500;
         let points = DomainPoints::scatter(&domain, &Sequence::default(), count, DVec2::ZERO);
         let mut caught = vec![0; count as usize];
-        for wrapped in &wrap(&strips, &domain, &points).strips[0] {
+        for wrapped in wrap(&strips, &domain, &points).points_of(&strips, &domain, &points, StripId(0)) {
             caught[wrapped.index as usize] += 1;
         }
         for (i, caught) in (0..).zip(caught) {
@@ -369,24 +369,26 @@ proptest! {
         let options = SegmentOptions { flatness_angle: degrees.to_radians(), ..SegmentOptions::default() };
         let Unfolded { strips, domain, .. } = unfolded(&mesh, &options);
         let points = DomainPoints::scatter(&domain, &Sequence::R2, count, DVec2::from(shift));
-        prop_assert_eq!(points.count(), count as usize);
+        prop_assert_eq!(points.count(), u64::from(count));
         let wrapping = wrap(&strips, &domain, &points);
-        let caught = wrapping.clone();
+        let caught = wrapping.count();
+        let mut of_strips: Vec<(StripId, u64)> = (0..strips.strips.len())
+            .map(StripId::new)
+            .flat_map(|s| wrapping.points_of(&strips, &domain, &points, s).map(move |w| (s, w.index)))
+            .collect();
+        of_strips.sort_unstable();
         let d_m = domain.side / f64::from(count).sqrt();
         let (corrected, correction) = correct(&mesh, &strips, &domain, &points, wrapping, tolerance * d_m);
-        prop_assert_eq!(corrected.len() + correction.removed, caught.count() + correction.projected);
+        prop_assert_eq!(corrected.len() + correction.removed, caught + correction.projected);
         // Of a point that a strip caught at least one copy is left, and no point is both projected and caught.
         let mut left: Vec<_> = corrected.iter().map(|c| (c.sample.strip, c.index)).collect();
         left.sort_unstable();
-        for (strip, caught) in caught.strips.iter().enumerate() {
-            for wrapped in caught {
-                prop_assert!(left.binary_search(&(StripId::new(strip), wrapped.index)).is_ok());
-            }
+        for caught in &of_strips {
+            prop_assert!(left.binary_search(caught).is_ok());
         }
         let projected = corrected.iter().filter(|c| c.sample.origin == ldwrap::Origin::Projected);
         for c in projected {
-            let strip = &caught.strips[c.sample.strip.index()];
-            prop_assert!(strip.binary_search_by_key(&c.index, |w| w.index).is_err());
+            prop_assert!(of_strips.binary_search(&(c.sample.strip, c.index)).is_err());
         }
     }
 }

@@ -4,16 +4,19 @@
 //! add up to at most the tolerance. Not covered by the strip, it lies in an interstice and is projected onto the
 //! nearer copy; covered more than once, it lies in an overlap and of its surface points beside that edge one is kept.
 
-use glam::{DVec2, DVec3};
+mod seams;
 
+use glam::DVec2;
+
+use crate::buckets::Buckets;
 use crate::domain::{DomainPoints, PlanarDomain};
 use crate::geometry::plane;
-use crate::ids::{HalfedgeId, StripId};
+use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::sample::{Origin, Sample, SurfacePoint};
-use crate::unfold::{Strip, Strips, Twin};
-use crate::wrap::{WrappedPoint, Wrapping};
+use crate::unfold::Strips;
+use crate::wrap::Wrapping;
 
 /// What the correction did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,7 +42,7 @@ pub struct Corrected {
 /// Mends thin interstices and overlaps, thinner than the length `tolerance`, and returns all samples ordered by the
 /// number of their domain point, then by strip and face.
 ///
-/// Cost: linear in the cut edges and the points near them.
+/// Cost: linear in the cut edges, the points near them, and the points caught.
 pub fn correct(
     mesh: &SurfaceMesh,
     strips: &Strips,
@@ -48,52 +51,32 @@ pub fn correct(
     wrapping: Wrapping,
     tolerance: f64,
 ) -> (Vec<Corrected>, Correction) {
-    let mends = parallel::map(strips.strips.len(), |s| {
-        let strip = &strips.strips[s];
-        let seams =
-            Seams { mesh, strip, offset: domain.offsets[s], points, caught: &wrapping.strips[s], tolerance };
-        seams.mend()
-    });
-    let mut correction = Correction::default();
-    let mut corrected = Vec::with_capacity(wrapping.count());
-    for (s, (caught, mend)) in wrapping.strips.into_iter().zip(mends).enumerate() {
-        let strip = StripId::new(s);
-        correction.projected += mend.projected.len();
-        correction.removed += mend.removed.len();
-        let mut removed = mend.removed.iter().copied().peekable();
-        let first = corrected.len();
-        for (i, wrapped) in caught.iter().enumerate() {
-            if removed.next_if_eq(&i).is_none() {
-                let WrappedPoint { index, point, place } = *wrapped;
-                let sample = Sample { point, strip, place, origin: Origin::Wrapped };
-                corrected.push(Corrected { index, copies_removed: 0, sample });
-            }
-        }
-        for removed in mend.removed {
-            // Of copies that lie beside an edge one is kept, so there is one to remember it.
-            let index = caught[removed].index;
-            let kept = first + corrected[first..].partition_point(|c| c.index < index);
-            if let Some(kept) = corrected.get_mut(kept).filter(|c| c.index == index) {
-                kept.copies_removed += 1;
-            }
-        }
-        for projection in mend.projected {
-            let Projection { index, place, halfedge, along, .. } = projection;
-            let mut barycentric = [0.0; 3];
-            barycentric[halfedge.corner()] = 1.0 - along;
-            barycentric[(halfedge.corner() + 1) % 3] = along;
-            let point = SurfacePoint { face: halfedge.face(), barycentric };
-            let sample = Sample { point, strip, place, origin: Origin::Projected };
-            corrected.push(Corrected { index, copies_removed: 0, sample });
-        }
-    }
-    corrected.sort_by_key(|c| (c.index, c.sample.strip, c.sample.point.face));
-    (corrected, correction)
+    Mended::new(mesh, strips, domain, points, wrapping, tolerance).in_order(mesh)
+}
+
+/// What was caught and what the correction does to it, face by face; samples are made when they are asked for.
+pub(crate) struct Mended<'a> {
+    strips: &'a Strips,
+    domain: &'a PlanarDomain,
+    points: &'a DomainPoints,
+    wrapping: Wrapping,
+    mends: Mends,
+}
+
+/// The little that the correction changes, each list ordered by face.
+#[derive(Default)]
+struct Mends {
+    /// Copies that were removed, by their slot.
+    removed: Vec<(FaceId, u64)>,
+    /// Copies that stay where others of them were removed, and how many.
+    kept: Vec<(FaceId, u64, u32)>,
+    projected: Vec<Projection>,
 }
 
 /// A point of an interstice and the edge onto which it is projected.
+#[derive(Clone, Copy)]
 struct Projection {
-    index: u64,
+    slot: u64,
     distance: f64,
     halfedge: HalfedgeId,
     /// How far along the half-edge, 0 to 1.
@@ -101,90 +84,138 @@ struct Projection {
     place: DVec2,
 }
 
-struct Mend {
-    projected: Vec<Projection>,
-    /// Places in the strip's caught points, ascending.
-    removed: Vec<usize>,
+/// The slice of a list ordered by face that belongs to one.
+fn of_face<T>(list: &[T], face: FaceId, of: impl Fn(&T) -> FaceId) -> &[T] {
+    let start = list.partition_point(|item| of(item) < face);
+    let end = start + list[start..].iter().take_while(|item| of(item) == face).count();
+    &list[start..end]
 }
 
-struct Seams<'a> {
-    mesh: &'a SurfaceMesh,
-    strip: &'a Strip,
-    offset: DVec2,
+impl<'a> Mended<'a> {
+    pub(crate) fn new(
+        mesh: &SurfaceMesh,
+        strips: &'a Strips,
+        domain: &'a PlanarDomain,
+        points: &'a DomainPoints,
+        wrapping: Wrapping,
+        tolerance: f64,
+    ) -> Self {
+        let mends = seams::mend(mesh, strips, domain, points, &wrapping, tolerance);
+        Self { strips, domain, points, wrapping, mends }
+    }
+
+    /// How many samples there are.
+    pub(crate) fn count(&self) -> usize {
+        self.wrapping.count() + self.mends.projected.len() - self.mends.removed.len()
+    }
+
+    /// What is on a face.
+    pub(crate) fn on(&self, face: FaceId) -> OnFace<'_> {
+        let place = self.strips.places[face.index()];
+        OnFace {
+            points: self.points,
+            face,
+            strip: place.strip,
+            corners: self.domain.triangle(self.strips, face),
+            slots: self.wrapping.slots(place),
+            removed: of_face(&self.mends.removed, face, |r| r.0),
+            kept: of_face(&self.mends.kept, face, |k| k.0),
+            projected: of_face(&self.mends.projected, face, |p| p.halfedge.face()),
+        }
+    }
+
+    /// All samples, ordered by the number of their domain point, then by strip and face.
+    pub(crate) fn in_order(&self, mesh: &SurfaceMesh) -> (Vec<Corrected>, Correction) {
+        const SAMPLES: usize = 8192;
+        let faces = mesh.face_count();
+        let size = (SAMPLES * faces / self.count().max(1)).clamp(1, SAMPLES);
+        let piece = |piece: usize| {
+            (piece * size..((piece + 1) * size).min(faces))
+                .flat_map(|face| self.on(FaceId::new(face)).into_samples())
+                .collect()
+        };
+        in_order(faces.div_ceil(size), piece, self.points.end(), |c| *c)
+    }
+
+    /// Above the number of every point.
+    pub(crate) fn end(&self) -> u64 {
+        self.points.end()
+    }
+}
+
+/// Puts the samples that are made in pieces in order: by the number of their domain point, then by strip and face.
+/// `end` is above all numbers. With what the correction did to them. Linear time, but for sorting within some thousands.
+pub(crate) fn in_order<R: Send>(
+    pieces: usize,
+    make: impl Fn(usize) -> Vec<Corrected> + Sync + Send,
+    end: u64,
+    take: impl Fn(&Corrected) -> R + Sync + Send,
+) -> (Vec<R>, Correction) {
+    /// Buckets: as many as a core keeps the ends of at hand.
+    const BUCKETS: u32 = 10;
+    let shift = (u64::BITS - end.leading_zeros()).saturating_sub(BUCKETS);
+    let buckets = Buckets::new(pieces, make, ((end >> shift) + 1) as usize, |c| (c.index >> shift) as usize);
+    let order = buckets.by_key(|c| (c.index, c.sample.strip, c.sample.point.face));
+    let counted = parallel::map_chunks(order.len(), 1 << 16, |range| {
+        order[range].iter().fold(Correction::default(), |sum, c| Correction {
+            projected: sum.projected + usize::from(c.sample.origin == Origin::Projected),
+            removed: sum.removed + c.copies_removed as usize,
+        })
+    });
+    let correction = counted.iter().fold(Correction::default(), |sum, c| Correction {
+        projected: sum.projected + c.projected,
+        removed: sum.removed + c.removed,
+    });
+    (parallel::map(order.len(), |i| take(order[i])), correction)
+}
+
+/// The samples of one face.
+pub(crate) struct OnFace<'a> {
     points: &'a DomainPoints,
-    caught: &'a [WrappedPoint],
-    tolerance: f64,
+    face: FaceId,
+    strip: StripId,
+    /// In the domain.
+    corners: [DVec2; 3],
+    slots: &'a [u64],
+    removed: &'a [(FaceId, u64)],
+    kept: &'a [(FaceId, u64, u32)],
+    projected: &'a [Projection],
 }
 
-impl Seams<'_> {
-    fn mend(&self) -> Mend {
-        let mut mend = Mend { projected: Vec::new(), removed: Vec::new() };
-        for edge in &self.strip.border {
-            let Twin::SameStrip { from, to } = edge.twin else { continue };
-            // Each cut edge lies in the border twice: once is enough.
-            let Some(twin) = self.mesh.topology().twin(edge.halfedge).filter(|t| edge.halfedge < *t) else {
-                continue;
-            };
-            if self.strip.gap(edge) > self.tolerance {
-                continue;
-            }
-            let at = |v: u32| self.strip.vertices[v as usize] + self.offset;
-            let near = [at(edge.from), at(edge.to)];
-            let far = [at(from), at(to)];
-            let low = near[0].min(near[1]).min(far[0]).min(far[1]) - self.tolerance;
-            let high = near[0].max(near[1]).max(far[0]).max(far[1]) + self.tolerance;
-            for slot in self.points.in_box(low, high).flatten() {
-                let (place, index) = self.points.at(slot);
-                let distance = plane::segment_distance(near[0], near[1], place);
-                let twin_distance = plane::segment_distance(far[0], far[1], place);
-                if distance + twin_distance > self.tolerance {
-                    continue;
-                }
-                let first = self.caught.partition_point(|c| c.index < index);
-                let copies = self.caught[first..].iter().take_while(|c| c.index == index).count();
-                if copies == 0 {
-                    let (distance, halfedge, along) = if distance <= twin_distance {
-                        (distance, edge.halfedge, plane::nearest_on_segment(near[0], near[1], place))
-                    } else {
-                        (twin_distance, twin, 1.0 - plane::nearest_on_segment(far[0], far[1], place))
-                    };
-                    mend.projected.push(Projection { index, distance, halfedge, along, place });
-                } else if copies > 1 {
-                    self.remove_copies(first..first + copies, edge.halfedge, &mut mend.removed);
-                }
-            }
-        }
-        // A place near several edges is projected onto the nearest.
-        mend.projected.sort_by(|a, b| {
-            a.index.cmp(&b.index).then(a.distance.total_cmp(&b.distance)).then(a.halfedge.cmp(&b.halfedge))
-        });
-        mend.projected.dedup_by_key(|p| p.index);
-        mend
+impl<'a> OnFace<'a> {
+    /// How many places for samples there are; a few may be empty.
+    pub(crate) fn len(&self) -> usize {
+        self.slots.len() + self.projected.len()
     }
 
-    /// Of the copies that lie beside the edge on the surface, keeps the first that was not removed before.
-    fn remove_copies(&self, copies: std::ops::Range<usize>, halfedge: HalfedgeId, removed: &mut Vec<usize>) {
-        let (a, b) = self.mesh.topology().ends(halfedge);
-        let (a, b) = (self.mesh.position(a), self.mesh.position(b));
-        let mut kept = false;
-        for copy in copies {
-            let position = self.mesh.locate(&self.caught[copy].point);
-            if distance_to_edge(a, b, position) > self.tolerance {
-                continue;
-            }
-            if let Err(slot) = removed.binary_search(&copy) {
-                if kept {
-                    removed.insert(slot, copy);
-                }
-                kept = true;
-            }
+    /// The sample at a place; `None` where one was removed.
+    #[inline]
+    pub(crate) fn sample(&self, at: usize) -> Option<Corrected> {
+        let Some(&slot) = self.slots.get(at) else {
+            return self.projected.get(at - self.slots.len()).map(|p| self.projection(p));
+        };
+        if self.removed.iter().any(|r| r.1 == slot) {
+            return None;
         }
+        let (place, index) = self.points.at(slot);
+        let [a, b, c] = self.corners;
+        let point = SurfacePoint { face: self.face, barycentric: plane::barycentric(a, b, c, place) };
+        let sample = Sample { point, strip: self.strip, place, origin: Origin::Wrapped };
+        let copies_removed = self.kept.iter().find(|k| k.1 == slot).map_or(0, |k| k.2);
+        Some(Corrected { index, copies_removed, sample })
     }
-}
 
-fn distance_to_edge(a: DVec3, b: DVec3, p: DVec3) -> f64 {
-    let ab = b - a;
-    let squared = ab.length_squared();
-    let t = if squared == 0.0 { 0.0 } else { ((p - a).dot(ab) / squared).clamp(0.0, 1.0) };
-    p.distance(a + ab * t)
+    fn projection(&self, projection: &Projection) -> Corrected {
+        let Projection { slot, place, halfedge, along, .. } = *projection;
+        let mut barycentric = [0.0; 3];
+        barycentric[halfedge.corner()] = 1.0 - along;
+        barycentric[(halfedge.corner() + 1) % 3] = along;
+        let point = SurfacePoint { face: self.face, barycentric };
+        let sample = Sample { point, strip: self.strip, place, origin: Origin::Projected };
+        Corrected { index: self.points.at(slot).1, copies_removed: 0, sample }
+    }
+
+    fn into_samples(self) -> impl Iterator<Item = Corrected> + 'a {
+        (0..self.len()).filter_map(move |at| self.sample(at))
+    }
 }

@@ -58,6 +58,7 @@
 
 pub mod attributes;
 pub mod baseline;
+mod buckets;
 pub mod correct;
 pub mod density;
 pub mod domain;

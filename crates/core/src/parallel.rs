@@ -16,6 +16,17 @@ pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync + Send) -
     }
 }
 
+/// Sorts items; equal ones must be the same.
+pub(crate) fn sort<T: Ord + Send>(items: &mut [T]) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        items.par_sort_unstable();
+    }
+    #[cfg(not(feature = "parallel"))]
+    items.sort_unstable();
+}
+
 /// Changes runs of `size` items (the last may be shorter); `f` hears where each starts.
 pub(crate) fn change_chunks<T: Send>(
     items: &mut [T],

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 
-use crate::correct::{Corrected, Correction, correct};
+use crate::correct::{Corrected, Correction, Mended};
 use crate::density::Density;
 use crate::domain::{DomainPoints, PlanarDomain, TooManyCells};
 use crate::irregularity;
@@ -102,19 +102,20 @@ impl Scattering<'_> {
         self.density.largest().min(affordable.max(4.0))
     }
 
-    fn scatter(&self, count: u64, d_m: f64) -> Result<(Vec<Corrected>, Correction), OptionsError> {
+    /// What `f` makes of the samples that so many points of the domain give.
+    fn scatter<R>(&self, count: u64, d_m: f64, f: impl FnOnce(&Mended<'_>) -> R) -> Result<R, OptionsError> {
         let reach = self.tolerance * d_m;
         let points =
             DomainPoints::scatter_near(self.domain, self.strips, &self.sequence, count, self.shift, reach)
                 .map_err(|TooManyCells| OptionsError::TooMany { wanted: count as f64 })?;
         let wrapping = wrap(self.strips, self.domain, &points);
-        Ok(correct(self.mesh, self.strips, self.domain, &points, wrapping, reach))
+        Ok(f(&Mended::new(self.mesh, self.strips, self.domain, &points, wrapping, reach)))
     }
 
     /// The points of `count` scattered ones that weights leave: those whose third coordinate is below their density
     /// over `peak`. Whether one stays depends on no other.
     fn weigh(&self, count: u64, d_m: f64, peak: f64) -> Result<Vec<Corrected>, OptionsError> {
-        let (mut caught, _) = self.scatter(count, d_m)?;
+        let (mut caught, _) = self.scatter(count, d_m, |mended| mended.in_order(self.mesh))?;
         if !self.density.is_uniform() {
             caught.retain(|c| {
                 sequence::third_coordinate(&self.sequence, c.index) * peak < self.density.at(&c.sample.point)
@@ -153,12 +154,17 @@ impl Scattering<'_> {
         low
     }
 
-    /// At least `n` points: `surplus` times as many, or more where those do not catch enough.
-    fn at_least(&self, n: usize, d_m: f64, surplus: f64) -> Result<Vec<Corrected>, OptionsError> {
+    /// How many points of the domain to begin with so that `surplus` times `n` are caught, in the densest places too.
+    fn count_for(&self, n: usize, surplus: f64) -> u64 {
         let wanted = n as f64 * surplus;
-        let mut count = self.domain_count(wanted * self.peak(wanted));
+        self.domain_count(wanted * self.peak(wanted))
+    }
+
+    /// At least `n` points: [`ENOUGH`] times as many, or more where those do not catch enough.
+    fn at_least(&self, n: usize, d_m: f64) -> Result<Vec<Corrected>, OptionsError> {
+        let mut count = self.count_for(n, ENOUGH);
         loop {
-            let (mut caught, _) = self.scatter(count, d_m)?;
+            let (mut caught, _) = self.scatter(count, d_m, |mended| mended.in_order(self.mesh))?;
             caught.retain(|c| self.density.at(&c.sample.point) > 0.0);
             if caught.len() >= n {
                 return Ok(caught);
@@ -170,15 +176,21 @@ impl Scattering<'_> {
     /// Exactly `n` points, thinned out evenly along the sequence.
     fn any(&self, n: usize) -> Result<Scattered, OptionsError> {
         let d_m = libm::sqrt(self.mesh.area() / n as f64);
-        Ok(scattered(thin_out(self.at_least(n, d_m, ENOUGH)?, n), d_m))
+        Ok(scattered(thin_out(self.at_least(n, d_m)?, n), d_m))
     }
 
     /// Exactly `n` points, the most central in each of as many regions of equal mass.
     fn by_regions(&self, n: usize) -> Result<Scattered, OptionsError> {
         let d_m = libm::sqrt(self.mesh.area() / n as f64);
-        let caught = self.at_least(n, d_m, SURPLUS)?;
         let regions = Regions::new(self.mesh, self.density, n);
-        Ok(scattered(regions.choose(self.mesh, caught), d_m))
+        let mut count = self.count_for(n, SURPLUS);
+        loop {
+            let chosen = self.scatter(count, d_m, |mended| regions.choose(mended, |c| c.sample))?;
+            if let Some((samples, correction)) = chosen {
+                return Ok(Scattered { samples, correction, d_m });
+            }
+            count = count.saturating_mul(2);
+        }
     }
 
     /// The first `n` points on the surface.

@@ -5,6 +5,8 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::PlanarDomain;
+use super::bands::Bands;
+use crate::ids::FaceId;
 use crate::parallel;
 use crate::unfold::Strips;
 
@@ -54,38 +56,38 @@ impl Grid {
         reach: f64,
     ) -> impl Iterator<Item = (u32, Range<u32>)> + use<> {
         let grid = *self;
-        let [a, b, c] = corners;
-        let low = a.min(b).min(c);
-        let high = a.max(b).max(c);
-        let (first, last) = (grid.row(low.y - reach), grid.row(high.y + reach));
-        let columns = move |left: f64, right: f64| grid.row(left)..grid.row(right) + 1;
+        let bands = Bands::new(corners);
+        let (first, last) = (grid.row(bands.low.y - reach), grid.row(bands.high.y + reach));
+        // Rounding of the cuts is far below this margin.
+        let margin = 1e-6 * grid.cell_side + reach;
         (first..=last).map(move |row| {
-            if first == last || low.x == high.x {
-                return (row, columns(low.x - reach, high.x + reach));
-            }
-            // Rounding of the cuts is far below this margin.
-            let margin = 1e-6 * grid.cell_side + reach;
             let bottom = f64::from(row) * grid.cell_side - margin;
-            let top = bottom + grid.cell_side + 2.0 * margin;
-            let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (p, q) in [(a, b), (b, c), (c, a)] {
-                let (p, q) = if p.y <= q.y { (p, q) } else { (q, p) };
-                if p.y > top || q.y < bottom {
-                    continue;
-                }
-                let x_at =
-                    |y: f64| if q.y > p.y { p.x + (q.x - p.x) * ((y - p.y) / (q.y - p.y)) } else { p.x };
-                let (x, z) =
-                    (if p.y < bottom { x_at(bottom) } else { p.x }, if q.y > top { x_at(top) } else { q.x });
-                left = left.min(x).min(z);
-                right = right.max(x).max(z);
-            }
-            if left > right {
-                return (row, 0..0);
-            }
-            (row, columns(left - margin, right + margin))
+            let cut = if first == last {
+                Some((bands.low.x, bands.high.x))
+            } else {
+                bands.between(bottom, bottom + grid.cell_side + 2.0 * margin)
+            };
+            let columns = cut.map(|(left, right)| grid.row(left - margin)..grid.row(right + margin) + 1);
+            (row, columns.unwrap_or(0..0))
         })
     }
+}
+
+/// Whether the rows of all triangles are few enough to be gone through.
+pub(super) fn count_rows(
+    grid: Grid,
+    domain: &PlanarDomain,
+    strips: &Strips,
+    reach: f64,
+) -> Result<(), TooManyCells> {
+    let rows: u64 = (0..strips.places.len())
+        .map(|face| {
+            let [a, b, c] = domain.triangle(strips, FaceId::new(face)).map(|v| v.y);
+            let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+            u64::from(grid.row(high + reach) - grid.row(low - reach)) + 1
+        })
+        .sum();
+    if rows > MOST_RUNS { Err(TooManyCells) } else { Ok(()) }
 }
 
 /// Cells side by side in a row.
@@ -130,21 +132,8 @@ impl Cells {
     ) -> Result<Self, TooManyCells> {
         const CHUNK: usize = 1 << 12;
         let faces: usize = strips.places.len();
-        let triangle = |face: usize| {
-            let place = strips.places[face];
-            let offset = domain.offsets[place.strip.index()];
-            strips.strips[place.strip.index()].triangle(place.index as usize).map(|v| v + offset)
-        };
-        let rows: u64 = (0..faces)
-            .map(|face| {
-                let [a, b, c] = triangle(face).map(|v| v.y);
-                let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-                u64::from(grid.row(high + reach) - grid.row(low - reach)) + 1
-            })
-            .sum();
-        if rows > MOST_RUNS {
-            return Err(TooManyCells);
-        }
+        let triangle = |face: usize| domain.triangle(strips, FaceId::new(face));
+        count_rows(grid, domain, strips, reach)?;
         let chunks = parallel::map_chunks(faces, CHUNK, |range| {
             let mut spans: Vec<(u32, u32, u32)> = Vec::new();
             for face in range {

@@ -12,7 +12,7 @@ const STEP: u128 = 0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c834;
 /// (i / n, i / golden ratio modulo 1).
 pub(super) fn point(index: u64, count: u64) -> DVec2 {
     let count = count.max(1);
-    let index = index % count;
+    let index = if index < count { index } else { index % count };
     DVec2::new(fraction::of(u128::from(index), u128::from(count)), fraction::of_multiple(index, STEP, 0))
 }
 

@@ -14,7 +14,8 @@ pub(super) fn of_bits(bits: u64) -> f64 {
 pub(super) fn of(numerator: u128, denominator: u128) -> f64 {
     debug_assert!(numerator < denominator && denominator < 1 << 127);
     if denominator <= u128::from(EXACT) {
-        return numerator as f64 / denominator as f64;
+        // Numbers that fit are converted from signed 64 bits, which is one instruction.
+        return (numerator as i64) as f64 / (denominator as i64) as f64;
     }
     let mut rest = numerator;
     let mut bits = 0u64;

@@ -7,7 +7,7 @@ use crate::sequence::{fraction, radical_inverse};
 /// (i / n, radical inverse of i).
 pub(super) fn point(base: u32, index: u64, count: u64) -> DVec2 {
     let count = count.max(1);
-    let index = index % count;
+    let index = if index < count { index } else { index % count };
     DVec2::new(fraction::of(u128::from(index), u128::from(count)), radical_inverse(index, base))
 }
 

@@ -1,0 +1,142 @@
+//! Things made in pieces, on every core, and taken up again in another order: first sorted into buckets, then bucket after
+//! bucket, so that what is looked at together lies together.
+
+use std::ops::Range;
+
+use crate::parallel;
+
+/// Pieces whose items are sorted by bucket.
+pub(crate) struct Buckets<T> {
+    pieces: Vec<Vec<T>>,
+    /// The runs of each bucket, bucket after bucket, piece after piece.
+    runs: Vec<Run>,
+    /// For each bucket where its runs start.
+    starts: Vec<u32>,
+}
+
+/// Items of a piece that are in one bucket.
+#[derive(Clone, Copy)]
+struct Run {
+    piece: u32,
+    start: u32,
+    end: u32,
+}
+
+impl<T: Copy + Send + Sync> Buckets<T> {
+    /// Sorts what `make` makes for each piece into `count` buckets; items of a piece and a bucket keep their order.
+    pub(crate) fn new(
+        pieces: usize,
+        make: impl Fn(usize) -> Vec<T> + Sync + Send,
+        count: usize,
+        bucket: impl Fn(&T) -> usize + Sync + Send,
+    ) -> Self {
+        let sorted = parallel::map(pieces, |piece| {
+            let items = sorted(make(piece), &bucket);
+            let mut runs = Vec::new();
+            let mut start = 0;
+            for run in items.chunk_by(|a, b| bucket(a) == bucket(b)) {
+                runs.push((bucket(&run[0]), start as u32..(start + run.len()) as u32));
+                start += run.len();
+            }
+            (items, runs)
+        });
+        let mut starts = vec![0u32; count + 1];
+        for (bucket, _) in sorted.iter().flat_map(|(_, runs)| runs) {
+            starts[bucket + 1] += 1;
+        }
+        for bucket in 0..count {
+            starts[bucket + 1] += starts[bucket];
+        }
+        let mut cursor = starts.clone();
+        let mut runs = vec![Run { piece: 0, start: 0, end: 0 }; starts[count] as usize];
+        for (piece, (bucket, Range { start, end })) in
+            (0u32..).zip(&sorted).flat_map(|(piece, (_, runs))| runs.iter().map(move |run| (piece, run)))
+        {
+            let slot = &mut cursor[*bucket];
+            runs[*slot as usize] = Run { piece, start: *start, end: *end };
+            *slot += 1;
+        }
+        Self { pieces: sorted.into_iter().map(|(items, _)| items).collect(), runs, starts }
+    }
+
+    /// How many items there are.
+    pub(crate) fn len(&self) -> usize {
+        self.pieces.iter().map(Vec::len).sum()
+    }
+
+    /// How many buckets there are.
+    pub(crate) fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The items of a bucket, piece after piece.
+    pub(crate) fn bucket(&self, bucket: usize) -> impl Iterator<Item = &T> {
+        let runs = &self.runs[self.starts[bucket] as usize..self.starts[bucket + 1] as usize];
+        runs.iter().flat_map(|run| &self.pieces[run.piece as usize][run.start as usize..run.end as usize])
+    }
+
+    /// All items by their keys, which must rise from bucket to bucket.
+    pub(crate) fn by_key<K: Ord + Copy + Send>(&self, key: impl Fn(&T) -> K + Sync + Send) -> Vec<&T> {
+        parallel::map(self.count(), |bucket| {
+            let mut keyed: Vec<(K, &T)> = self.bucket(bucket).map(|item| (key(item), item)).collect();
+            keyed.sort_unstable_by_key(|(key, _)| *key);
+            keyed.into_iter().map(|(_, item)| item).collect::<Vec<&T>>()
+        })
+        .concat()
+    }
+}
+
+/// Items by their buckets, those of one in the order they had.
+fn sorted<T: Copy>(mut items: Vec<T>, bucket: impl Fn(&T) -> usize) -> Vec<T> {
+    if items.is_sorted_by_key(&bucket) {
+        return items;
+    }
+    let (low, high) =
+        items.iter().map(&bucket).fold((usize::MAX, 0), |(low, high), b| (low.min(b), high.max(b)));
+    // Counting is faster as long as the counters are not many more than the items.
+    if high - low > 4 * items.len() {
+        items.sort_by_key(bucket);
+        return items;
+    }
+    let mut cursor = vec![0u32; high - low + 2];
+    for item in &items {
+        cursor[bucket(item) - low + 1] += 1;
+    }
+    for b in 1..cursor.len() {
+        cursor[b] += cursor[b - 1];
+    }
+    let mut placed = items.clone();
+    for item in &items {
+        let slot = &mut cursor[bucket(item) - low];
+        placed[*slot as usize] = *item;
+        *slot += 1;
+    }
+    placed
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// As one stable sort of everything, with few buckets and with many more than items.
+        #[test]
+        fn buckets_are_a_stable_sort(items in prop::collection::vec(0..200u32, 0..400), size in 1..50usize, wide in 1..90u32) {
+            let piece = |p: usize| -> Vec<(u32, usize)> {
+                let range = p * size..((p + 1) * size).min(items.len());
+                range.map(|i| (items[i], i)).collect()
+            };
+            let bucket = |item: &(u32, usize)| (item.0 * wide) as usize;
+            let buckets = Buckets::new(items.len().div_ceil(size), piece, 200 * wide as usize, bucket);
+            let mut expected: Vec<(u32, usize)> = items.iter().copied().zip(0..).collect();
+            expected.sort_by_key(|item| item.0);
+            let found: Vec<_> = (0..buckets.count()).flat_map(|b| buckets.bucket(b)).copied().collect();
+            prop_assert_eq!(&found, &expected);
+            prop_assert_eq!(buckets.len(), items.len());
+            let by_key: Vec<_> = buckets.by_key(|item| *item).into_iter().copied().collect();
+            prop_assert_eq!(by_key, expected);
+        }
+    }
+}

@@ -1,0 +1,86 @@
+use super::*;
+use crate::domain::{DomainPoints, PlanarDomain};
+use crate::planted;
+use crate::segment::{SegmentOptions, segment};
+use crate::sequence::Sequence;
+use crate::shapes::{self, Shape};
+use crate::unfold::{Strips, unfold};
+use crate::wrap::wrap;
+
+/// What stays of `caught` points of a mesh when `n` are wanted.
+fn chosen(mesh: &SurfaceMesh, caught: f64, n: usize) -> Option<Vec<Corrected>> {
+    let strips: Strips = unfold(mesh, &segment(mesh, &SegmentOptions::default()));
+    let domain = PlanarDomain::lay_out(&strips);
+    let count = (caught * domain.room(mesh.area())) as u32;
+    let points = DomainPoints::scatter(&domain, &Sequence::default(), count, glam::DVec2::ZERO);
+    let wrapping = wrap(&strips, &domain, &points);
+    let mended = Mended::new(mesh, &strips, &domain, &points, wrapping, 0.0);
+    Regions::new(mesh, &Density::UNIFORM, n).choose(&mended, |c| *c).map(|(chosen, _)| chosen)
+}
+
+#[test]
+fn regions_of_a_square_are_quarters_of_quarters() {
+    let mesh = planted::mesh(&shapes::square(16));
+    let (low, high) = mesh.bounds();
+    let regions = Regions::new(&mesh, &Density::UNIFORM, 16);
+    let mut expected: Vec<(i32, i32)> = Vec::new();
+    let mut found: Vec<(i32, i32)> = Vec::new();
+    for i in 0..4 {
+        for j in 0..4 {
+            expected.push((250 * i + 125, 250 * j + 125));
+        }
+    }
+    for centroid in regions.centroids(0..16) {
+        let at = (centroid - low) / (high - low).max_element() * 1000.0;
+        found.push((at.x.round() as i32, at.y.round() as i32));
+    }
+    found.sort_unstable();
+    assert_eq!(found, expected);
+    // Whatever part of the row is looked at.
+    assert!(
+        regions
+            .centroids(5..11)
+            .iter()
+            .zip(&regions.centroids(0..16)[5..])
+            .all(|(a, b)| a.distance(*b) < 1e-12)
+    );
+}
+
+#[test]
+fn one_point_stays_in_each_region_and_every_component_has_its_share() {
+    let mut soup = Shape::Cube.generate();
+    planted::join(
+        &mut soup,
+        &planted::moved(Shape::Sphere.generate(), |p| p * 1.3 + DVec3::new(5.0, 0.0, 0.0)),
+    );
+    planted::join(
+        &mut soup,
+        &planted::moved(Shape::Tetrahedron.generate(), |p| p * 0.1 - DVec3::new(5.0, 0.0, 0.0)),
+    );
+    let mesh = planted::mesh(&soup);
+    let components = mesh.topology().components();
+    let mut areas = vec![0.0; components.count];
+    for face in mesh.topology().face_ids() {
+        areas[components.of_face[face.index()] as usize] += mesh.face_area(face);
+    }
+    for n in [1, 2, 10, 77, 500, 9000] {
+        let chosen = chosen(&mesh, 40.0 * n as f64 + 400.0, n).expect("enough points");
+        assert_eq!(chosen.len(), n);
+        assert!(chosen.windows(2).all(|w| w[0].index <= w[1].index), "in order of the sequence");
+        let mut counts = vec![0.0; components.count];
+        for c in &chosen {
+            counts[components.of_face[c.sample.point.face.index()] as usize] += 1.0;
+        }
+        for (count, area) in counts.iter().zip(&areas) {
+            let due = area / mesh.area() * n as f64;
+            assert!((count - due).abs() <= 1.0 + 1e-9, "{n}: {counts:?} of {areas:?}");
+        }
+    }
+}
+
+#[test]
+fn too_few_points_are_told() {
+    let mesh = planted::mesh(&shapes::square(4));
+    assert!(chosen(&mesh, 60.0, 100).is_none());
+    assert_eq!(chosen(&mesh, 101.0, 100).map(|c| c.len()), Some(100));
+}
