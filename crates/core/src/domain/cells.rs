@@ -19,6 +19,9 @@ const MOST_RUNS: u64 = if usize::BITS < 64 { 1 << 22 } else { 1 << 26 };
 /// The most cells that are kept: a point each takes 24 bytes.
 const MOST_CELLS: u64 = if usize::BITS < 64 { 1 << 25 } else { 1 << 30 };
 
+/// The most points of a set without a list that are caught: their slots take 8 bytes each, what is made of them more.
+pub(super) const MOST_CAUGHT: u64 = MOST_CELLS / 2;
+
 /// More cells or rows would be needed than memory is spent on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TooManyCells;

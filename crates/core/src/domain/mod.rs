@@ -109,6 +109,9 @@ impl DomainPoints {
         let filled = domain.room(area) <= FILLED;
         let grid = Grid::new(domain, count)?;
         if let Sequence::Hammersley { base } = *sequence {
+            if count as f64 / domain.room(area) > cells::MOST_CAUGHT as f64 {
+                return Err(TooManyCells);
+            }
             if !filled {
                 cells::count_rows(grid, domain, strips, reach)?;
             }
