@@ -164,10 +164,7 @@ impl Fitting<'_> {
         }
         let tie = match (self.tie, widest) {
             (Tie::Flattest, Some(_)) => 0.0,
-            (Tie::Flattest, None) => topology.twin(across).map_or(0.0, |twin| {
-                let normals = [across, twin].map(|h| self.mesh.face_normal(h.face()));
-                normals[0].distance_squared(normals[1])
-            }),
+            (Tie::Flattest, None) => self.shapes.bend(across),
             (Tie::Nearest, _) => (corners[0] + corners[1] + corners[2]).length(),
             (Tie::Tightest, widest) => widest.unwrap_or(0.0),
         };

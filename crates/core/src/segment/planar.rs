@@ -8,53 +8,63 @@ use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::{Components, SurfaceMesh};
 use crate::parallel;
 
+/// A triangle seen from one of its sides, in single precision: enough to choose by, and little to look at.
+#[derive(Clone, Copy)]
+struct Side {
+    length: f32,
+    /// Where the opposite corner lies when the side goes from (0, 0) to (1, 0).
+    apex: [f32; 2],
+    /// The squared distance of the unit normals on both sides of it: 0 where flat, 4 where folded back.
+    bend: f32,
+}
+
 /// The shapes of all triangles, seen from each of their sides.
 pub(super) struct Shapes {
-    /// The length of each side.
-    lengths: Vec<f64>,
-    /// Where the corner opposite to each side lies when that side goes from (0, 0) to (1, 0).
-    apexes: Vec<DVec2>,
+    sides: Vec<[Side; 3]>,
 }
 
 impl Shapes {
     pub(super) fn new(mesh: &SurfaceMesh) -> Self {
-        const CHUNK: usize = 1 << 13;
-        let pieces = parallel::map_chunks(mesh.face_count(), CHUNK, |range| {
-            let mut shapes = Self {
-                lengths: Vec::with_capacity(3 * range.len()),
-                apexes: Vec::with_capacity(3 * range.len()),
-            };
-            for face in range {
-                let [a, b, c] = mesh.triangle(FaceId::new(face));
-                for (a, b, c) in [(a, b, c), (b, c, a), (c, a, b)] {
-                    let (length, x, y) = triangle::flatten(a, b, c);
-                    shapes.lengths.push(length);
-                    // Faces have an area, so no side is zero.
-                    shapes.apexes.push(DVec2::new(x, y) / length);
-                }
-            }
-            shapes
-        });
-        let count = 3 * mesh.face_count();
-        let mut shapes = Self { lengths: Vec::with_capacity(count), apexes: Vec::with_capacity(count) };
-        for piece in pieces {
-            shapes.lengths.extend(piece.lengths);
-            shapes.apexes.extend(piece.apexes);
-        }
-        shapes
+        let of_face = |face: usize| {
+            let face = FaceId::new(face);
+            let corners = mesh.triangle(face);
+            [0, 1, 2].map(|corner| {
+                let [a, b, c] = [0, 1, 2].map(|turn| corners[(corner + turn) % 3]);
+                let (length, x, y) = triangle::flatten(a, b, c);
+                let twin = mesh.topology().twin(HalfedgeId::of(face, corner));
+                let bend = twin.map_or(0.0, |twin| {
+                    mesh.face_normal(face).distance_squared(mesh.face_normal(twin.face()))
+                });
+                // Faces have an area, so no side is zero.
+                let apex = [x / length, y / length].map(|x| x as f32);
+                Side { length: length as f32, apex, bend: bend as f32 }
+            })
+        };
+        Self { sides: parallel::map(mesh.face_count(), of_face) }
+    }
+
+    #[inline]
+    fn side(&self, side: HalfedgeId) -> Side {
+        self.sides[side.face().index()][side.corner()]
     }
 
     #[inline]
     pub(super) fn length(&self, side: HalfedgeId) -> f64 {
-        self.lengths[side.index()]
+        self.side(side).length.into()
+    }
+
+    /// How much the surface bends at a side; 0 at the border.
+    #[inline]
+    pub(super) fn bend(&self, side: HalfedgeId) -> f64 {
+        self.side(side).bend.into()
     }
 
     /// The corners of a face when its side `side` goes from `from` to `to`.
     #[inline]
     fn beside(&self, side: HalfedgeId, from: DVec2, to: DVec2) -> [DVec2; 3] {
-        let apex = self.apexes[side.index()];
+        let [x, y] = self.side(side).apex.map(f64::from);
         let along = to - from;
-        let apex = from + along * apex.x + along.perp() * apex.y;
+        let apex = from + along * x + along.perp() * y;
         match side.corner() {
             0 => [from, to, apex],
             1 => [apex, from, to],
@@ -77,7 +87,7 @@ pub(super) struct Planar<'a> {
 
 impl<'a> Planar<'a> {
     pub(super) fn new(shapes: &'a Shapes) -> Self {
-        Self { shapes, corners: vec![[DVec2::ZERO; 3]; shapes.lengths.len() / 3] }
+        Self { shapes, corners: vec![[DVec2::ZERO; 3]; shapes.sides.len()] }
     }
 
     /// The planar corners of all faces of a segmentation.
