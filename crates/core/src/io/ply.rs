@@ -65,10 +65,12 @@ pub(super) fn read_within(
                     soup.positions = attributes::positions(element, &vertices);
                     continue;
                 }
-                let parser = Parser::<Vertex>::new();
-                let vertices =
-                    parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
-                soup.positions = vertices.into_iter().map(|v| v.0).collect();
+                soup.positions.reserve(element.count);
+                in_blocks(&mut reader, element, &header, |vertices: Vec<Vertex>| {
+                    soup.positions.extend(vertices.into_iter().map(|v| v.0));
+                    Ok(())
+                })
+                .map_err(|failure| failure.explained(error))?;
             }
             "face" => {
                 require_corners(element)?;
@@ -79,9 +81,15 @@ pub(super) fn read_within(
                     face_values.add(element, &faces, &mut soup, limits)?;
                     continue;
                 }
-                let parser = Parser::<Corners>::new();
-                let faces = parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
-                add_faces(&mut soup, faces.iter().map(|face| &face.0[..]), limits)?;
+                soup.ends.reserve(element.count);
+                soup.corners.reserve(element.count.saturating_mul(3));
+                let mut first = 0;
+                in_blocks(&mut reader, element, &header, |faces: Vec<Corners>| {
+                    add_faces(&mut soup, first, faces.iter().map(|face| &face.0[..]), limits)?;
+                    first += faces.len();
+                    Ok(())
+                })
+                .map_err(|failure| failure.explained(error))?;
             }
             "tristrips" => {
                 require_corners(element)?;
@@ -107,6 +115,39 @@ pub(super) fn read_within(
         attributes::texture(&header, &soup, &mut found, limits, resolver)?;
     }
     Ok(Model { soup, attributes: found })
+}
+
+/// Why a block was not taken.
+enum Failure {
+    Parse(ParseError),
+    Read(ReadError),
+}
+
+impl Failure {
+    fn explained(self, explain: impl FnOnce(ParseError) -> ReadError) -> ReadError {
+        match self {
+            Self::Parse(error) => explain(error),
+            Self::Read(error) => error,
+        }
+    }
+}
+
+/// Reads an element block by block, so that not all of it is there twice.
+fn in_blocks<E: PropertyAccess>(
+    reader: &mut Reader<&[u8]>,
+    element: &ElementDef,
+    header: &Header,
+    mut take: impl FnMut(Vec<E>) -> Result<(), ReadError>,
+) -> Result<(), Failure> {
+    const BLOCK: usize = 1 << 12;
+    let parser = Parser::<E>::new();
+    let mut block = element.clone();
+    for start in (0..element.count).step_by(BLOCK) {
+        block.count = BLOCK.min(element.count - start);
+        let elements = parser.read_payload_for_element(reader, &block, header).map_err(Failure::Parse)?;
+        take(elements).map_err(Failure::Read)?;
+    }
+    Ok(())
 }
 
 /// The header, and where the data starts.
@@ -185,14 +226,14 @@ fn require_corners(element: &ElementDef) -> Result<(), ReadError> {
     require(element, &[name], |kind| matches!(kind, PropertyType::List(..)))
 }
 
+/// Adds faces, of which `first` lie before these.
 fn add_faces<'a>(
     soup: &mut PolygonSoup,
-    faces: impl ExactSizeIterator<Item = &'a [i64]>,
+    first: usize,
+    faces: impl Iterator<Item = &'a [i64]>,
     limits: &Limits,
 ) -> Result<(), ReadError> {
-    soup.ends.reserve(faces.len());
-    soup.corners.reserve(faces.len().saturating_mul(3));
-    for (index, face) in faces.enumerate() {
+    for (index, face) in (first..).zip(faces) {
         if let Some(&corner) = face.iter().find(|&&corner| u32::try_from(corner).is_err()) {
             return Err(malformed(Place::Item("face", index), format!("a corner is vertex {corner}")));
         }

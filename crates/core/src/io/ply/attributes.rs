@@ -169,7 +169,7 @@ impl Faces {
         limits: &Limits,
     ) -> Result<(), ReadError> {
         let (mut corner, mut polygon) = (soup.corners.len(), soup.polygon_count());
-        add_faces(soup, faces.iter().map(|face| &face.corners[..]), limits)?;
+        add_faces(soup, 0, faces.iter().map(|face| &face.corners[..]), limits)?;
         let colors = Colors::of(element);
         let material = columns(element, ["material_index"]);
         for face in faces {
