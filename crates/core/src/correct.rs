@@ -151,9 +151,10 @@ pub(crate) fn in_order<R: Send>(
     end: u64,
     take: impl Fn(&Corrected) -> R + Sync + Send,
 ) -> (Vec<R>, Correction) {
-    /// Buckets: as many as a core keeps the ends of at hand.
-    const BUCKETS: u32 = 10;
-    let shift = (u64::BITS - end.leading_zeros()).saturating_sub(BUCKETS);
+    /// Buckets of this many numbers, which hold some thousands of samples, as long as there are not too many of them.
+    const NUMBERS: u32 = 14;
+    const MOST: u32 = 12;
+    let shift = (u64::BITS - end.leading_zeros()).saturating_sub(MOST).max(NUMBERS);
     let buckets = Buckets::new(pieces, make, ((end >> shift) + 1) as usize, |c| (c.index >> shift) as usize);
     let order = buckets.by_key(|c| (c.index, c.sample.strip, c.sample.point.face));
     let counted = parallel::map_chunks(order.len(), 1 << 16, |range| {

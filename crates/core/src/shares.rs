@@ -129,8 +129,8 @@ impl<'a> Regions<'a> {
     /// What was caught on some faces of the row, each with its region and how far it lies from the middle.
     fn candidates(&self, caught: &Mended<'_>, row: Range<usize>) -> Vec<Candidate> {
         let end = self.row.get(row.end).map_or(self.count as f64, |next| next.along);
-        let first = self.region_at(self.row[row.start].along);
-        let centroids = self.centroids(first..self.region_at(end) + 1);
+        let (first, last) = (self.region_at(self.row[row.start].along), self.region_at(end));
+        let centroids = self.centroids(first..last + 1);
         // In units of d_m, so that singles hold it.
         let unit = self.count as f64 / self.mesh.area();
         let mut candidates = Vec::new();
@@ -142,7 +142,8 @@ impl<'a> Regions<'a> {
                 let Some(Corrected { sample, .. }) = on.sample(nth) else { continue };
                 if self.density.at(&sample.point) > 0.0 {
                     let weights = sample.point.barycentric;
-                    let region = self.region_at(along + mass * walk.share(weights));
+                    // Rounding may carry the end of a face over.
+                    let region = self.region_at(along + mass * walk.share(weights)).min(last);
                     let off = walk.position(weights).distance_squared(centroids[region - first]) * unit;
                     candidates.push(Candidate {
                         region: region as u32,
@@ -166,7 +167,7 @@ impl<'a> Regions<'a> {
     ) -> Option<(Vec<R>, Correction)> {
         /// Points a piece of work is to have, and regions of a bucket.
         const POINTS: usize = 8192;
-        const REGIONS: usize = 2048;
+        const REGIONS: usize = 8192;
         let faces = self.row.len();
         let size = (POINTS * faces / caught.count().max(1)).clamp(1, POINTS);
         let candidates = Buckets::new(
