@@ -107,7 +107,7 @@ mod tests {
             let mut stay: Vec<u32> = stay.concat().iter().map(|c| c.nth).collect();
             stay.sort_unstable();
             let mut order = all.clone();
-            order.sort_by(|a, b| (a.region, a.off as u32, a.face, a.nth).cmp(&(b.region, b.off as u32, b.face, b.nth)));
+            order.sort_by_key(|c| (c.region, c.off as u32, c.face, c.nth));
             let (mut expected, mut spare) = (Vec::new(), Vec::new());
             for c in order {
                 if expected.len() <= c.region as usize { expected.push(c.nth) } else { spare.push(c.nth) }
