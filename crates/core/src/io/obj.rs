@@ -295,7 +295,7 @@ mod tests {
         for wrong in ["vn 1 2\n", "vn 1 two 3\n", "vt\n"] {
             let text = text.to_owned() + wrong;
             let error = read_model(text.as_bytes(), Detail::Attributes, &|_| Err(String::new())).unwrap_err();
-            assert!(error.to_string().starts_with("OBJ, line 9"), "{error}");
+            assert!(error.to_string().starts_with("OBJ, line 10"), "{error}");
         }
     }
 
