@@ -1,7 +1,8 @@
 //! Equalizing: beyond the paper, every point ends up standing for the same area.
 //!
-//! Coarse to fine: whole numbers of points for components, segments and planes (`patches`), a hierarchy of balanced
-//! splits down to a region for each point (`balance`), then relaxation of power cells on the surface (`relax`).
+//! Coarse to fine: whole numbers of points for components (`patches`), a hierarchy of balanced splits down to a region for
+//! each point (`balance`), then relaxation of power cells on the surface (`relax`); at last the side of a crease on which a
+//! point stands, so that planes and segments have their shares (`sides`).
 
 mod balance;
 mod capacity;
@@ -14,6 +15,7 @@ mod owners;
 mod patches;
 mod places;
 mod relax;
+mod sides;
 mod spacing;
 mod tiles;
 mod views;
@@ -37,6 +39,7 @@ use owners::{Cell, diagram};
 use patches::Patches;
 use places::Spot;
 use relax::{Relaxed, relax};
+use sides::Sides;
 use tiles::{Scale, tiles};
 
 pub use views::{Cameras, ForViews};
@@ -110,7 +113,7 @@ pub fn equalize(
     let d_m = libm::sqrt(mesh.area() / n as f64);
     let (low, high) = mesh.bounds();
     let scale = Scale { density, d_m, bend: options.bend, middle: (low + high) * 0.5 };
-    let patches = Patches::new(mesh, strip_of_face, &density.face_masses(mesh), n);
+    let patches = Patches::new(mesh, &density.face_masses(mesh), n);
     let places: Vec<DVec3> = parallel::map(n, |i| mesh.locate(&points[i]) - scale.middle);
     let tiles = tiles(mesh, &patches.of_face, &scale);
     let items = items(mesh, &patches, points, &places, options.bend * d_m);
@@ -141,8 +144,9 @@ pub fn equalize(
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
     let homes: Vec<Place> = dues.iter().map(|due| layout.blocks[due.block as usize].centre).collect();
     let relaxed = relax(&layout, start, &homes, &wanted, options.rounds, progress);
-    let mut settled = settle(&layout, &relaxed);
-    spacing::make_way(&layout, &relaxed, &mut settled);
+    let sides = Sides::new(mesh, strip_of_face, density, n);
+    let mut settled = settle(&layout, &relaxed, sides.as_ref());
+    spacing::make_way(&layout, &relaxed, sides.as_ref(), &mut settled);
     if let Some(options) = &options.for_views {
         views::choose(mesh, scale.middle, &layout, &relaxed, &mut settled, options, progress);
     }
@@ -206,11 +210,17 @@ fn items(
     order.into_iter().map(item).collect()
 }
 
-/// The place of each cell's tiles that lies nearest to its centroid; `None` for an empty cell.
-fn settle(layout: &Layout, relaxed: &Relaxed) -> Vec<Option<Spot>> {
+/// The place of each cell's tiles that lies nearest to its centroid, on the side where the cell's point is due; `None`
+/// for an empty cell.
+fn settle(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>) -> Vec<Option<Spot>> {
     let centroid = |cell: &Cell| (cell.mass > 0.0).then(|| cell.moment.position / cell.mass);
     let centroids: Vec<_> = relaxed.diagram.cells.iter().map(centroid).collect();
-    owners::nearest(layout, &relaxed.near, &relaxed.sites, &centroids)
+    let Some(sides) = sides else {
+        return owners::nearest(layout, &relaxed.near, &relaxed.sites, &centroids, |_, _| true);
+    };
+    let due = sides.share_out(layout, &relaxed.near, &relaxed.sites);
+    let is_due = |site: u32, face| due[site as usize] == Some(sides.of(face));
+    owners::nearest(layout, &relaxed.near, &relaxed.sites, &centroids, is_due)
 }
 
 /// Standard deviation over mean.

@@ -8,6 +8,7 @@ use super::layout::{Layout, Place};
 use super::near::{Near, Site};
 use super::places::Spot;
 use crate::geometry::triangle;
+use crate::ids::FaceId;
 
 /// What a site owns.
 #[derive(Clone, Copy, Debug, Default)]
@@ -112,15 +113,17 @@ impl Owners for Sums {
     }
 }
 
-/// For each site the place of its cell's tiles that lies nearest to a wanted place; `None` where nothing is wanted or
-/// the cell is empty.
+/// For each site the place of its cell's tiles that lies nearest to a wanted place, on faces where it `may` stand; `None`
+/// where nothing is wanted or there is no such place.
 pub(super) fn nearest(
     layout: &Layout,
     near: &Near,
     sites: &[Site],
     wanted: &[Option<DVec3>],
+    may: impl Fn(u32, FaceId) -> bool + Sync,
 ) -> Vec<Option<Spot>> {
-    let new = || Nearest { layout, wanted, of_block: Vec::new(), best: Vec::new(), found: Vec::new() };
+    let may = &may;
+    let new = || Nearest { layout, wanted, may, of_block: Vec::new(), best: Vec::new(), found: Vec::new() };
     let mut best: Vec<Option<(f64, Spot)>> = vec![None; sites.len()];
     for (site, distance, spot) in walk(layout, near, sites, new).into_iter().flat_map(|n| n.found) {
         let best = &mut best[site as usize];
@@ -131,27 +134,32 @@ pub(super) fn nearest(
     best.into_iter().map(|best| best.map(|(_, spot)| spot)).collect()
 }
 
-struct Nearest<'a> {
+struct Nearest<'a, May> {
     layout: &'a Layout,
     wanted: &'a [Option<DVec3>],
-    of_block: Vec<Option<DVec3>>,
+    may: &'a May,
+    /// The contenders of the block, with what is wanted for each.
+    of_block: Vec<(u32, Option<DVec3>)>,
     best: Vec<Option<(f64, Spot)>>,
     found: Vec<(u32, f64, Spot)>,
 }
 
-impl Owners for Nearest<'_> {
+impl<May: Fn(u32, FaceId) -> bool> Owners for Nearest<'_, May> {
     const POLYGONS: bool = false;
 
     fn begin(&mut self, contenders: &[Power]) {
         self.of_block.clear();
-        self.of_block.extend(contenders.iter().map(|power| self.wanted[power.site as usize]));
+        self.of_block.extend(contenders.iter().map(|power| (power.site, self.wanted[power.site as usize])));
         self.best.clear();
         self.best.resize(contenders.len(), None);
     }
 
     fn whole(&mut self, site: usize, tile: usize, _: f64) {
-        let Some(wanted) = self.of_block[site] else { return };
+        let (id, Some(wanted)) = self.of_block[site] else { return };
         let tile = &self.layout.tiles[tile];
+        if !(self.may)(id, tile.face) {
+            return;
+        }
         let [a, b, c] = self.layout.corners(tile);
         let least = self.best[site].map_or(f64::INFINITY, |(least, _)| least);
         // A tile whose nearest corner is farther by more than its longest side has no nearer place.

@@ -8,6 +8,7 @@ use super::layout::Layout;
 use super::near::Runs;
 use super::places::{Spot, spots};
 use super::relax::Relaxed;
+use super::sides::Sides;
 
 /// The distance that points keep, in distances of the points: a little more than half of the hexagonal ideal, which is
 /// sqrt(2 / sqrt(3)) = 1.0746.
@@ -25,8 +26,9 @@ const SWEEPS: usize = 12;
 /// Of a shortage of distance, squared, so much counts against a way from the centroid, squared.
 const WEIGHT: f64 = 30.0;
 
-/// Moves the points of `own`, one for each site, that stand closer than half of the hexagonal ideal to another.
-pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, own: &mut [Option<Spot>]) {
+/// Moves the points of `own`, one for each site, that stand closer than half of the hexagonal ideal to another. Each
+/// stays on its side.
+pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>, own: &mut [Option<Spot>]) {
     let mut at: Vec<DVec3> =
         relaxed.sites.iter().zip(&*own).map(|(s, o)| o.map_or(s.place.position, |o| o.place)).collect();
     let kept = |i: usize, j: usize| KEPT * relaxed.sites[i].distance.min(relaxed.sites[j].distance);
@@ -70,7 +72,8 @@ pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, own: &mut [Option<Spo
             let centroid = cell.moment.position / cell.mass;
             let cost = |spot: &Spot| WEIGHT * short(spot.place) + spot.place.distance_squared(centroid);
             let mut best = (cost(&now), now);
-            for spot in &spots[i] {
+            let stays = |spot: &&Spot| sides.is_none_or(|sides| sides.of(spot.face) == sides.of(now.face));
+            for spot in spots[i].iter().filter(stays) {
                 let cost = cost(spot);
                 if cost < best.0 {
                     best = (cost, *spot);

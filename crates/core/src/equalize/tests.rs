@@ -72,6 +72,43 @@ fn both_sides_of_a_thin_plate_get_half() {
 }
 
 #[test]
+fn two_points_of_a_thin_plate_stand_on_its_two_sides() {
+    let plate = mesh(&shapes::plate(12, 1e-3));
+    for seed in 0..5 {
+        let result = equalized(&plate, &baseline::random(&plate, 2, seed), 5);
+        let sum: f64 = result.points.iter().map(|p| plate.face_normal(p.face).z).sum();
+        assert!(sum.abs() < 1e-9, "seed {seed}: {sum}");
+    }
+}
+
+#[test]
+fn planes_worth_few_points_get_their_share_to_within_one() {
+    let stretched = |mut soup: PolygonSoup| {
+        soup.positions.iter_mut().for_each(|p| *p *= DVec3::new(1.0, 5.0, 20.0));
+        soup
+    };
+    let areas = [100.0, 20.0, 5.0];
+    for k in [1, 4] {
+        let bar = mesh(&stretched(shapes::cube(k)));
+        for n in [3, 8, 20, 60, 150] {
+            let result = equalized(&bar, &baseline::random(&bar, n, 4), 5);
+            for axis in 0..3 {
+                let due = n as f64 * areas[axis] / 250.0;
+                for side in [-1.0, 1.0] {
+                    let is_there = |p: &&SurfacePoint| bar.face_normal(p.face)[axis] * side > 0.5;
+                    let count = result.points.iter().filter(is_there).count();
+                    // Planes that are due less than half a point share what they are due together.
+                    assert!(
+                        (count as f64 - due).abs() < 1.0 + 1e-3,
+                        "n {n} axis {axis} side {side}: {count} for {due}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn every_plane_of_a_cube_gets_its_share() {
     let cube = mesh(&shapes::cube(3));
     for n in [50, 100, 601] {
@@ -181,15 +218,15 @@ fn view_error(mesh: &SurfaceMesh, points: &[SurfacePoint]) -> f64 {
 
 #[test]
 fn places_for_views_serve_views_that_took_no_part() {
-    let cup = mesh(&shapes::cup(1));
-    let strips = vec![StripId(0); cup.face_count()];
-    let points = baseline::random(&cup, 80, 1);
+    let knot = mesh(&shapes::trefoil(96, 12, 0.3));
+    let strips = vec![StripId(0); knot.face_count()];
+    let points = baseline::random(&knot, 80, 1);
     let run = |for_views| {
         let options = EqualizeOptions { for_views, ..EqualizeOptions::default() };
-        equalize(&cup, &points, &strips, &Density::UNIFORM, &options, &Silent)
+        equalize(&knot, &points, &strips, &Density::UNIFORM, &options, &Silent)
     };
-    let (plain, placed) = (run(None), run(Some(ForViews { views: Some(512), ..ForViews::default() })));
-    let [before, after] = [&plain, &placed].map(|e| view_error(&cup, &e.points));
+    let (plain, placed) = (run(None), run(Some(ForViews::default())));
+    let [before, after] = [&plain, &placed].map(|e| view_error(&knot, &e.points));
     assert!(after < 0.8 * before, "{after} after {before}");
     assert_eq!(placed.cells, plain.cells, "each point stays in its cell");
 }

@@ -1,0 +1,342 @@
+//! Sides: what lies between creases. A cell that straddles a crease has its point on one side of it; which one is
+//! rounded so that every side gets its share of the points to within one.
+
+use glam::DVec3;
+
+use super::clip;
+use super::diagram::{Owners, Power, walk};
+use super::layout::{Layout, Place};
+use super::near::{Near, Site};
+use crate::density::Density;
+use crate::ids::{FaceId, HalfedgeId, StripId};
+use crate::mesh::SurfaceMesh;
+use crate::sets::Sets;
+
+/// Neighbours whose normals are at least this far apart (squared distance; 4 sin^2(15 degrees)) meet in a crease.
+const CREASE: f64 = 0.267_949_192_431_122_7;
+
+/// Sides that are due fewer points than this are one side together.
+const FEWEST: f64 = 0.5;
+
+/// Which side each face belongs to; at least two.
+pub(super) struct Sides {
+    of_face: Vec<u32>,
+    /// The mean normal of each side.
+    normals: Vec<DVec3>,
+}
+
+impl Sides {
+    /// Of `n` points; `None` where there is one side only.
+    pub(super) fn new(
+        mesh: &SurfaceMesh,
+        strip_of_face: &[StripId],
+        density: &Density,
+        n: usize,
+    ) -> Option<Self> {
+        let mut sets = Sets::new(mesh.face_count());
+        for face in mesh.topology().face_ids() {
+            for neighbour in smooth_neighbours(mesh, face) {
+                if strip_of_face[face.index()] == strip_of_face[neighbour.index()] {
+                    sets.join(face.0, neighbour.0);
+                }
+            }
+        }
+        let masses = density.face_masses(mesh);
+        let each = masses.iter().sum::<f64>() / n as f64;
+        let mut due = vec![0.0; mesh.face_count()];
+        for (face, mass) in (0..).zip(&masses) {
+            due[sets.root(face) as usize] += mass / each;
+        }
+        // The first is that of all small ones.
+        let mut count = 1;
+        let mut number = vec![0; mesh.face_count()];
+        for (number, _) in number.iter_mut().zip(&due).filter(|(_, due)| **due >= FEWEST) {
+            *number = count;
+            count += 1;
+        }
+        let of_face: Vec<u32> =
+            (0..mesh.face_count() as u32).map(|face| number[sets.root(face) as usize]).collect();
+        let mut normals = vec![(DVec3::ZERO, 0.0); count as usize];
+        for (face, (side, mass)) in of_face.iter().zip(&masses).enumerate() {
+            let sum: &mut (DVec3, f64) = &mut normals[*side as usize];
+            *sum = (sum.0 + mesh.face_normal(FaceId::new(face)) * *mass, sum.1 + mass);
+        }
+        let normals =
+            normals.into_iter().map(|(sum, mass)| if mass > 0.0 { sum / mass } else { sum }).collect();
+        (count > 2 || due.iter().filter(|&&due| due < FEWEST).sum::<f64>() >= FEWEST)
+            .then_some(Self { of_face, normals })
+    }
+
+    pub(super) fn of(&self, face: FaceId) -> u32 {
+        self.of_face[face.index()]
+    }
+
+    /// The side on which the point of each site stands; `None` where its cell is empty.
+    pub(super) fn share_out(&self, layout: &Layout, near: &Near, sites: &[Site]) -> Vec<Option<u32>> {
+        let new = || Parts { layout, sides: self, of_block: Vec::new(), parts: Vec::new() };
+        let mut parts: Vec<Vec<Part>> = vec![Vec::new(); sites.len()];
+        for (site, part) in walk(layout, near, sites, new).into_iter().flat_map(|p| p.parts) {
+            add(&mut parts[site as usize], part);
+        }
+        for parts in &mut parts {
+            let mass: f64 = parts.iter().map(|p| p.share).sum();
+            parts.iter_mut().for_each(|p| p.share /= mass);
+            parts.retain(|p| p.share > 0.0);
+        }
+        round(&mut parts, &self.normals);
+        let largest =
+            |parts: &Vec<Part>| parts.iter().max_by(|a, b| a.share.total_cmp(&b.share)).map(|part| part.side);
+        parts.iter().map(largest).collect()
+    }
+}
+
+/// The faces beside a face that do not meet it in a crease.
+fn smooth_neighbours(mesh: &SurfaceMesh, face: FaceId) -> impl Iterator<Item = FaceId> + use<'_> {
+    (0..3)
+        .filter_map(move |corner| Some(mesh.topology().twin(HalfedgeId::of(face, corner))?.face()))
+        .filter(move |&near| mesh.face_normal(face).distance_squared(mesh.face_normal(near)) < CREASE)
+}
+
+/// What of a cell lies on a side: mass, later the share of the cell's mass, last 0 or 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Part {
+    side: u32,
+    share: f64,
+}
+
+fn add(parts: &mut Vec<Part>, part: Part) {
+    match parts.iter_mut().find(|p| p.side == part.side) {
+        Some(p) => p.share += part.share,
+        None => parts.push(part),
+    }
+}
+
+/// Adds up what sites own on each side.
+struct Parts<'a> {
+    layout: &'a Layout,
+    sides: &'a Sides,
+    of_block: Vec<Vec<Part>>,
+    parts: Vec<(u32, Part)>,
+}
+
+impl Owners for Parts<'_> {
+    const POLYGONS: bool = false;
+
+    fn begin(&mut self, contenders: &[Power]) {
+        self.of_block.iter_mut().for_each(Vec::clear);
+        self.of_block.resize(contenders.len().max(self.of_block.len()), Vec::new());
+    }
+
+    fn whole(&mut self, site: usize, tile: usize, mass: f64) {
+        let side = self.sides.of(self.layout.tiles[tile].face);
+        add(&mut self.of_block[site], Part { side, share: mass });
+    }
+
+    fn part(&mut self, site: usize, tile: usize, mass: f64, _: &[clip::Corner]) {
+        self.whole(site, tile, mass);
+    }
+
+    fn moment(&mut self, _: usize, _: Place) {}
+
+    fn border(&mut self, _: [usize; 2], _: f64) {}
+
+    fn end(&mut self, contenders: &[Power]) {
+        for (parts, power) in self.of_block.iter().zip(contenders) {
+            self.parts.extend(parts.iter().map(|part| (power.site, *part)));
+        }
+    }
+}
+
+/// What sides have more than they are due.
+struct Surplus<'a> {
+    normals: &'a [DVec3],
+    of_side: Vec<f64>,
+    /// The sum of what sides have too much times their normals: how far a view from there sees too many points.
+    tilt: DVec3,
+}
+
+/// Against the square of the tilt so much counts the sum of the squares of what sides have too much.
+const EVEN: f64 = 0.25;
+
+impl Surplus<'_> {
+    /// How bad it would be to take that much from the second of two sides for the first.
+    fn after(&self, [a, b]: [usize; 2], by: f64) -> f64 {
+        let [more, less] = [self.of_side[a] + by, self.of_side[b] - by];
+        let tilt = self.tilt + (self.normals[a] - self.normals[b]) * by;
+        tilt.length_squared() + EVEN * (more * more + less * less)
+    }
+
+    fn shift(&mut self, [a, b]: [usize; 2], by: f64) {
+        self.of_side[a] += by;
+        self.of_side[b] -= by;
+        self.tilt += (self.normals[a] - self.normals[b]) * by;
+    }
+}
+
+/// Shares this near to 0 or 1 are that.
+const WHOLE: f64 = 1e-9;
+
+fn is_open(share: f64) -> bool {
+    share > WHOLE && share < 1.0 - WHOLE
+}
+
+/// An open share: of which cell, at which place among its parts.
+type Edge = (u32, u32);
+
+/// Makes every share 0 or 1. Cells keep their sum, 1, and the sum of every side ends at a whole number beside it.
+///
+/// Cells and sides are the vertices of a graph, open shares its edges. Along a cycle, or a path between sides with one
+/// open share each, shares are raised and lowered in turn until one is whole (pipage rounding: Ageev and Sviridenko
+/// 2004, DOI 10.1023/B:JOCO.0000038913.96607.c2). The way that raises what is large already is taken.
+fn round(cells: &mut [Vec<Part>], normals: &[DVec3]) {
+    let sides = normals.len();
+    let mut at_side: Vec<Vec<Edge>> = vec![Vec::new(); sides];
+    for (cell, parts) in (0..).zip(cells.iter()) {
+        for (k, part) in (0..).zip(parts).filter(|(_, part)| is_open(part.share)) {
+            at_side[part.side as usize].push((cell, k));
+        }
+    }
+    // Sides from where to start: those with one open share as soon as there are some.
+    let mut leaves: Vec<usize> = (0..sides).filter(|&side| at_side[side].len() == 1).collect();
+    let mut position: Vec<Option<usize>> = vec![None; sides];
+    let mut surplus = Surplus { normals, of_side: vec![0.0; sides], tilt: DVec3::ZERO };
+    let mut next = 0;
+    loop {
+        let start = loop {
+            match leaves.pop() {
+                Some(side) if at_side[side].len() == 1 => break Some(side),
+                Some(_) => {}
+                None => break None,
+            }
+        };
+        let start = match start {
+            Some(side) => side,
+            None => {
+                while next < sides && at_side[next].is_empty() {
+                    next += 1;
+                }
+                if next == sides {
+                    return;
+                }
+                next
+            }
+        };
+        // Edges in turn: into a cell, out of it into another side.
+        let mut walk: Vec<Edge> = Vec::new();
+        let mut passed = vec![start];
+        position[start] = Some(0);
+        let mut side = start;
+        let first = loop {
+            let came_by = walk.last().map(|edge| edge.0);
+            let Some(&(cell, k)) = at_side[side].iter().find(|edge| Some(edge.0) != came_by) else {
+                // The end of a path between two sides with one open share.
+                break 0;
+            };
+            let parts = &cells[cell as usize];
+            let out = (0..parts.len()).find(|&other| other != k as usize && is_open(parts[other].share));
+            let Some(out) = out else {
+                // Rounding errors left this share alone.
+                walk.push((cell, k));
+                break walk.len() - 1;
+            };
+            walk.extend([(cell, k), (cell, out as u32)]);
+            side = parts[out].side as usize;
+            if let Some(before) = position[side] {
+                // A cycle; what led to it stays.
+                break 2 * before;
+            }
+            position[side] = Some(passed.len());
+            passed.push(side);
+        };
+        for side in &passed {
+            position[*side] = None;
+        }
+        // A path changes the sums of its ends, a cycle none.
+        let ends = (side != passed[first / 2]).then_some([start, side]);
+        shift(cells, &walk[first..], ends, &mut surplus);
+        for &(cell, k) in &walk[first..] {
+            let part = cells[cell as usize][k as usize];
+            if !is_open(part.share) {
+                let edges = &mut at_side[part.side as usize];
+                edges.retain(|edge| *edge != (cell, k));
+                if edges.len() == 1 {
+                    leaves.push(part.side as usize);
+                }
+            }
+        }
+        if at_side[start].len() == 1 {
+            leaves.push(start);
+        }
+    }
+}
+
+/// Raises every other share and lowers those between until one is whole. The first is the first end's, the last the
+/// second's.
+fn shift(cells: &mut [Vec<Part>], walk: &[Edge], ends: Option<[usize; 2]>, surplus: &mut Surplus) {
+    let share = |cells: &[Vec<Part>], (cell, k): Edge| cells[cell as usize][k as usize].share;
+    if let [alone] = walk {
+        let part = &mut cells[alone.0 as usize][alone.1 as usize];
+        part.share = part.share.round();
+        return;
+    }
+    let signed = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let room = |way: f64, i: usize, share: f64| if way * signed(i) > 0.0 { 1.0 - share } else { share };
+    let shares: Vec<f64> = walk.iter().map(|&edge| share(cells, edge)).collect();
+    let by = |way: f64| {
+        shares.iter().enumerate().map(|(i, &share)| room(way, i, share)).fold(f64::INFINITY, f64::min)
+    };
+    let [raised, lowered] =
+        [1.0, -1.0].map(|way| ends.map_or(0.0, |ends| surplus.after(ends, way * by(way))));
+    let large: f64 = shares.iter().enumerate().map(|(i, share)| signed(i) * share).sum();
+    let raise = if (raised - lowered).abs() > WHOLE { raised < lowered } else { large >= 0.0 };
+    let way = if raise { 1.0 } else { -1.0 };
+    let by = by(way);
+    if let Some(ends) = ends {
+        surplus.shift(ends, way * by);
+    }
+    for (i, &(cell, k)) in walk.iter().enumerate() {
+        let share = &mut cells[cell as usize][k as usize].share;
+        let whole = room(way, i, *share) <= by + WHOLE;
+        *share += way * signed(i) * by;
+        if whole {
+            *share = share.round();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn every_side_gets_its_share_to_within_one(
+            raw in prop::collection::vec(prop::collection::vec((0_u32..12, 0.01_f64..1.0), 1..5), 1..60)
+        ) {
+            let mut cells: Vec<Vec<Part>> = Vec::new();
+            for parts in raw {
+                let mut cell = Vec::new();
+                parts.into_iter().for_each(|(side, share)| add(&mut cell, Part { side, share }));
+                let sum: f64 = cell.iter().map(|p| p.share).sum();
+                cell.iter_mut().for_each(|p| p.share /= sum);
+                cells.push(cell);
+            }
+            let sums = |cells: &[Vec<Part>]| {
+                let mut sums = [0.0; 12];
+                cells.iter().flatten().for_each(|p| sums[p.side as usize] += p.share);
+                sums
+            };
+            let due = sums(&cells);
+            round(&mut cells, &[DVec3::ZERO; 12]);
+            for cell in &cells {
+                prop_assert!(cell.iter().all(|p| p.share == 0.0 || p.share == 1.0));
+                prop_assert_eq!(cell.iter().filter(|p| p.share == 1.0).count(), 1);
+            }
+            for (due, got) in due.iter().zip(sums(&cells)) {
+                prop_assert!((due - got).abs() < 1.0 + 1e-6, "{} for {}", got, due);
+            }
+        }
+    }
+}
