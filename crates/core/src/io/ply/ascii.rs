@@ -10,6 +10,9 @@ use crate::io::detect::MeshFormat;
 use crate::io::read::{Place, ReadError, brief};
 use crate::io::text::real;
 
+/// For so many records at most is memory reserved before they are read.
+const MOST_RESERVED: usize = 1 << 16;
+
 /// The lines behind the header.
 pub(super) struct Lines<'a> {
     rest: &'a str,
@@ -47,8 +50,8 @@ impl<'a> Lines<'a> {
         if element.properties.is_empty() {
             return Ok(Vec::new());
         }
-        // There are enough bytes for as many.
-        let mut records = Vec::with_capacity(element.count);
+        // A record may take more memory than the two bytes that are known to be there for each.
+        let mut records = Vec::with_capacity(element.count.min(MOST_RESERVED));
         for index in 0..element.count {
             let Some(line) = self.next() else {
                 return Err(ReadError::Truncated {
