@@ -128,13 +128,30 @@ fn ply_lies() -> Vec<Case> {
             "PLY of text with NaN",
             "a.ply",
             ply().replacen("0 1 0\n", "0 nan 0\n", 1),
-            error("\"nan\""),
+            error("vertex 2"),
         ),
         Case::file(
             "PLY of text with 1e999",
             "a.ply",
             ply().replacen("0 1 0\n", "0 1e999 0\n", 1),
             error("finite"),
+        ),
+        Case::file(
+            "PLY of text with NaN in a property that is no position",
+            "a.ply",
+            ply()
+                .replacen("element face", "property float heat\nelement face", 1)
+                .replacen("0 1 0\n", "0 1 0 -nan(ind)\n", 1)
+                .replacen("0 0 0\n", "0 0 0 inf\n", 1)
+                .replacen("1 0 0\n", "1 0 0 1.#QNAN\n", 1)
+                .replacen("0 0 1\n", "0 0 1 0.\n", 1),
+            POINTS,
+        ),
+        Case::file(
+            "PLY of text with carriage returns for the ends of lines",
+            "a.ply",
+            ply().replace('\n', "\r"),
+            POINTS,
         ),
         Case::file("binary PLY with NaN", "a.ply", ply_binary("uchar", &[3], &nan), error("vertex 2")),
         Case::file(
@@ -364,6 +381,13 @@ fn gltf_lies() -> Vec<Case> {
             error("KHR_draco_mesh_compression"),
         ),
         Case::file(
+            "a buffer for what meshopt unpacks",
+            "a.gltf",
+            gltf(NODE, ACCESSOR, r#","extensionsUsed":["EXT_meshopt_compression"]"#)
+                .replace(r#","uri":"data:;base64,"#, r#","name":""#),
+            error("EXT_meshopt_compression"),
+        ),
+        Case::file(
             "a buffer that is not there",
             "a.gltf",
             gltf(NODE, ACCESSOR, "").replace("data:;base64,", "b.bin?"),
@@ -398,6 +422,12 @@ fn other_files() -> Vec<Case> {
     let thin = Limits { corners: 11, ..Limits::default() };
     vec![
         Case::file("an empty file", "a.obj", "", error("known format")),
+        Case::file(
+            "OBJ in UTF-16",
+            "a.obj",
+            [0xfeff].into_iter().chain(obj().encode_utf16()).flat_map(u16::to_le_bytes).collect::<Vec<u8>>(),
+            error("UTF-16"),
+        ),
         Case::file("a file of zeros", "a.dat", vec![0; 1000], error("known format")),
         Case::file("a PNG picture", "a.png", b"\x89PNG\r\n\x1a\n", error("PNG")),
         Case::file("a ZIP archive", "a.zip", "PK\x03\x04", error("ZIP")),

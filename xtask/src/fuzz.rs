@@ -9,12 +9,30 @@ use crate::{Failure, root, target};
 /// Where `cargo fuzz` looks for the targets.
 const CRATE: &str = "crates/core";
 
+/// How the targets are built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Build {
+    /// In little time: with overflow checks, without a sanitizer. The library has no unsafe code.
+    Quick,
+    /// Optimised, with the address sanitizer, which also watches what the libraries below do.
+    Sanitized,
+}
+
+impl Build {
+    fn arguments(self) -> &'static [&'static str] {
+        match self {
+            Self::Quick => &["--dev", "--sanitizer", "none"],
+            Self::Sanitized => &[],
+        }
+    }
+}
+
 /// Fuzzes every target for `seconds`, from its committed corpus on; what is new stays in the target folder. Without
 /// `cargo-fuzz` or a nightly compiler nothing is fuzzed, which is said: the tests replay the corpus in any case.
 ///
 /// # Errors
 /// A target that does not build, or an input that breaks a promise; its file is named.
-pub fn run_all(seconds: u32) -> Result<(), Failure> {
+pub fn run_all(seconds: u32, build: Build) -> Result<(), Failure> {
     if let Some(missing) = missing() {
         eprintln!(
             "SKIPPED: FUZZING: {missing}; `cargo install cargo-fuzz --locked` and `rustup toolchain install nightly` \
@@ -24,7 +42,9 @@ pub fn run_all(seconds: u32) -> Result<(), Failure> {
     }
     let built = target().join("fuzz");
     run(command("cargo")
-        .args(["+nightly", "fuzz", "build", "--target-dir"])
+        .args(["+nightly", "fuzz", "build"])
+        .args(build.arguments())
+        .arg("--target-dir")
         .arg(&built)
         .current_dir(root().join(CRATE))
         .env_remove("RUSTUP_TOOLCHAIN")
@@ -36,7 +56,9 @@ pub fn run_all(seconds: u32) -> Result<(), Failure> {
         fs::create_dir_all(&found)?;
         fs::create_dir_all(&broken)?;
         run(command("cargo")
-            .args(["+nightly", "fuzz", "run", "--target-dir"])
+            .args(["+nightly", "fuzz", "run"])
+            .args(build.arguments())
+            .arg("--target-dir")
             .arg(&built)
             .arg(&name)
             .arg(&found)

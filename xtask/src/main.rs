@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use xtask::fuzz::Build;
 use xtask::instructions::{self, Then};
 use xtask::{browser, checks, fuzz, serve, web};
 
@@ -31,9 +32,9 @@ fn main() -> ExitCode {
             Err(_) => Err(format!("{port} is not a port").into()),
         },
         ["browser"] => browser::find().map(|path| eprintln!("{}", path.display())),
-        ["fuzz"] => fuzz::run_all(600),
+        ["fuzz"] => fuzz::run_all(600, Build::Sanitized),
         ["fuzz", seconds] => match seconds.parse() {
-            Ok(seconds) => fuzz::run_all(seconds),
+            Ok(seconds) => fuzz::run_all(seconds, Build::Sanitized),
             Err(_) => Err(format!("{seconds} is not a number of seconds").into()),
         },
         ["help"] => {

@@ -1,7 +1,7 @@
 //! The mesh that is worked on: from a file or stdin to a checked surface.
 
-use std::fs;
-use std::io::{Read, stdin as standard_input};
+use std::fs::{self, File};
+use std::io::{self, Read, stdin as standard_input};
 use std::path::{Component, Path};
 
 use anyhow::{Context, anyhow};
@@ -40,10 +40,10 @@ pub(crate) fn read_detail(
     let stdin = args.mesh.as_os_str() == "-";
     let name = if stdin { "stdin".to_owned() } else { args.mesh.display().to_string() };
     progress.begin("read", 1);
-    let limits = args.reading.max_memory.map(Limits::for_memory).unwrap_or_default();
+    let limits = Limits::for_memory(args.reading.memory());
     let bytes = bytes(&args.mesh, stdin, limits.bytes).with_context(|| name.clone())?;
     let folder = if stdin { None } else { args.mesh.parent() };
-    let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file);
+    let resolver = |file: &str| beside(folder.unwrap_or(Path::new("")), file, limits.bytes);
     let reading =
         ReadOptions { format: args.reading.mesh_format.map(Into::into), name: Some(&name), detail, limits };
     let mut model = read_model_with(&bytes, &reading, &resolver).with_context(|| name.clone())?;
@@ -124,42 +124,56 @@ impl From<MeshFormatArg> for MeshFormat {
 }
 
 /// A file that a mesh names: only one in the mesh's own folder or below it, whatever the mesh says.
-fn beside(folder: &Path, file: &str) -> Result<Vec<u8>, String> {
+fn beside(folder: &Path, file: &str, most: u64) -> Result<Vec<u8>, String> {
     let inside = Path::new(file).components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
     if !inside {
         return Err("it lies outside the mesh's folder".to_owned());
     }
-    fs::read(folder.join(file)).map_err(|error| format!("it cannot be read ({error})"))
+    let path = folder.join(file);
+    // A pipe would be waited for.
+    match fs::metadata(&path) {
+        Ok(found) if !found.is_file() => return Err("it is no file".to_owned()),
+        Ok(_) => {}
+        Err(error) => return Err(format!("it cannot be read ({error})")),
+    }
+    let bytes = File::open(path).and_then(|file| at_most(file, most));
+    match bytes {
+        Ok(Some(bytes)) => Ok(bytes),
+        Ok(None) => Err(format!("it has more than {most} bytes, which is the limit (--max-memory)")),
+        Err(error) => Err(format!("it cannot be read ({error})")),
+    }
 }
 
 /// The bytes of a file; of too many not more than show that it is too large.
 fn bytes(path: &Path, stdin: bool, most: u64) -> anyhow::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let too_large = || {
-        anyhow!(
-            "has more than {most} bytes, which is the limit; split the mesh, or raise the limit (--max-memory)"
-        )
-    };
-    if stdin {
-        let input = standard_input().lock();
-        input.take(most.saturating_add(1)).read_to_end(&mut bytes).context("cannot be read")?;
-        if bytes.len() as u64 > most {
-            return Err(too_large());
-        }
+    let bytes = if stdin {
+        at_most(standard_input().lock(), most).context("cannot be read")?
     } else {
         let found = fs::metadata(path).context("cannot be opened")?;
         if found.is_dir() {
             return Err(anyhow!("is a folder; name a mesh file in it"));
         }
+        // Pipes and devices have no length until they are read.
         if found.len() > most {
-            return Err(too_large());
+            None
+        } else {
+            File::open(path).and_then(|file| at_most(file, most)).context("cannot be read")?
         }
-        bytes = fs::read(path).context("cannot be read")?;
+    };
+    match bytes {
+        None => Err(anyhow!(
+            "has more than {most} bytes, which is the limit; split the mesh, or raise the limit (--max-memory)"
+        )),
+        Some(bytes) if bytes.is_empty() => Err(anyhow!("is empty: there is no mesh in it")),
+        Some(bytes) => Ok(bytes),
     }
-    if bytes.is_empty() {
-        return Err(anyhow!("is empty: there is no mesh in it"));
-    }
-    Ok(bytes)
+}
+
+/// All bytes, if they are no more than `most`.
+fn at_most(input: impl Read, most: u64) -> io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    input.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= most).then_some(bytes))
 }
 
 /// What checking did, one line for each kind of repair.

@@ -11,8 +11,8 @@ use ldwrap::segment::SegmentOptions;
 use ldwrap::sequence::Sequence;
 
 use crate::args::{
-    AttributeArg, ForViewsArgs, OrderArg, PlacingArgs, RequestArgs, SegmentArgs, SelectArg, SequenceArg,
-    SequenceArgs, WrapOutputArgs,
+    AttributeArg, ForViewsArgs, OrderArg, PlacingArgs, ReadingArgs, RequestArgs, SegmentArgs, SelectArg,
+    SequenceArg, SequenceArgs, WrapOutputArgs,
 };
 use crate::exit::{Failure, Outcome};
 use crate::output::{Destination, Targets};
@@ -208,8 +208,8 @@ pub(crate) fn wrap_options(segment: &SegmentArgs, points: &SequenceArgs) -> Outc
 
 /// Refuses more points than fit in the memory allowed, by what runs took: 1,000,000 and 4,000,000 points wrapped, and
 /// 300,000 equalized.
-pub(crate) fn points_fit(options: &Options, area: f64, max_memory: Option<u64>) -> anyhow::Result<()> {
-    let Some(most) = max_memory else { return Ok(()) };
+pub(crate) fn points_fit(options: &Options, area: f64, reading: &ReadingArgs) -> anyhow::Result<()> {
+    let most = reading.memory();
     let n = match options.request {
         Request::Count(n) => n as f64,
         Request::Density(density) => density * area,
@@ -225,9 +225,12 @@ pub(crate) fn points_fit(options: &Options, area: f64, max_memory: Option<u64>) 
         return Ok(());
     }
     Err(anyhow::anyhow!(
-        "{n:.0} points take about {:.0} MB of memory, but --max-memory allows {:.0}: ask for fewer points, raise \
-         --max-memory{advice}",
+        "{n:.0} points take about {:.0} MB of memory, but {} {:.0}: ask for fewer points, raise --max-memory{advice}",
         n * each / 1e6,
+        match reading.max_memory {
+            Some(_) => "--max-memory allows",
+            None => "without --max-memory no more are taken than",
+        },
         most as f64 / 1e6
     ))
 }

@@ -7,6 +7,7 @@ mod commands;
 mod exit;
 mod input;
 mod job;
+mod memory;
 mod methods;
 mod output;
 mod picture;

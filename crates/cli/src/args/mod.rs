@@ -12,6 +12,8 @@ use ldwrap::io::points::PointFormat;
 use ldwrap::segment::{GrowthOrder, SegmentOptions};
 use ldwrap::shapes::Shape;
 
+use crate::memory;
+
 pub(crate) use batch::{BatchArgs, BatchOutputArgs, Shard};
 pub(crate) use judge::{BoundArgs, CompareArgs, MeasureArgs, PlanarSet, PlaneArgs, PointsOf};
 pub(crate) use wrap::{
@@ -93,9 +95,17 @@ pub(crate) struct ReadingArgs {
     #[arg(long)]
     pub(crate) keep_winding: bool,
     /// Refuse meshes, pictures and numbers of points that may need more memory than SIZE: bytes, or with K, M, G or T
-    /// behind the number [default: files of 16G, 268 million vertices]
+    /// behind the number [default: three quarters of what the machine, the container or the shell allows]; never files
+    /// above 16G or 268 million vertices
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub(crate) max_memory: Option<u64>,
+}
+
+impl ReadingArgs {
+    /// The most memory that a run may plan with, in bytes.
+    pub(crate) fn memory(&self) -> u64 {
+        self.max_memory.unwrap_or_else(memory::planned)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

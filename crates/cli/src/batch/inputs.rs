@@ -6,12 +6,12 @@ use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use glob::{MatchOptions, Pattern};
 use walkdir::WalkDir;
 
 use crate::args::BatchArgs;
 use crate::batch::Task;
 use crate::batch::names::{Naming, mesh_extension};
+use crate::batch::pattern::{Matcher, is_pattern};
 use crate::batch::record::{Kind, Trouble};
 use crate::exit::{Failure, Outcome};
 
@@ -75,23 +75,36 @@ impl Finder<'_> {
     }
 
     fn add_matches(&mut self, pattern: &str) -> Outcome {
-        const AS_THE_SHELL: MatchOptions = MatchOptions {
-            case_sensitive: true,
-            require_literal_separator: true,
-            require_literal_leading_dot: true,
-        };
         let wrong = |problem: &str| Failure::wrong_use(format!("{pattern}: {problem}"));
-        let found = glob::glob_with(pattern, AS_THE_SHELL).map_err(|error| wrong(error.msg))?;
-        let start = pattern_folder(Path::new(pattern));
+        let matcher = Matcher::new(pattern).map_err(|error| wrong(error.msg))?;
+        let start = matcher.folder();
         let before = self.tasks.len();
         // A pattern that starts in OUT_DIR means what lies there.
-        let all = self.is_output(&start);
-        for path in found {
-            match path {
-                Ok(path) if path.is_dir() => {}
-                Ok(path) if !all && path.parent().is_some_and(|folder| self.is_output(folder)) => {}
-                Ok(path) => self.add_file(&path, Some(&start))?,
-                Err(error) => self.add_unlisted(error.path(), &error.error().to_string()),
+        let out = self.out.clone().filter(|_| !self.is_output(start));
+        let walk = WalkDir::new(if start.as_os_str().is_empty() { Path::new(".") } else { start });
+        let walk = walk.min_depth(1).max_depth(matcher.most_depth()).follow_links(true).sort_by_file_name();
+        let is_wanted = |entry: &walkdir::DirEntry| {
+            entry.depth() == 0 || (matcher.leads_on(entry) && !is_folder(entry, out.as_deref()))
+        };
+        for entry in walk.into_iter().filter_entry(is_wanted) {
+            match entry {
+                Ok(entry) if entry.file_type().is_dir() => {}
+                Ok(entry) => {
+                    if let Some(path) = matcher.matched(entry.path()) {
+                        self.add_file(&path, Some(start))?;
+                    }
+                }
+                // A link to a folder above: its files are found there.
+                Err(error) if error.loop_ancestor().is_some() => {}
+                Err(error) => match error.path() {
+                    Some(path) if is_link(path) => {
+                        if let Some(path) = matcher.matched(path) {
+                            self.add_file(&path, Some(start))?;
+                        }
+                    }
+                    Some(path) if path.exists() => self.add_unlisted(path, &reason(&error)),
+                    _ => {}
+                },
             }
         }
         if self.tasks.len() == before {
@@ -110,11 +123,7 @@ impl Finder<'_> {
         let walk = WalkDir::new(folder).min_depth(1).follow_links(true).sort_by_file_name().into_iter();
         let out = self.out.clone();
         let is_shown = move |entry: &walkdir::DirEntry| {
-            let hidden = entry.file_name().as_encoded_bytes().starts_with(b".");
-            // Asking for the full path of every folder is cheap; of every file it is not.
-            let output =
-                || out.is_some() && entry.file_type().is_dir() && fs::canonicalize(entry.path()).ok() == out;
-            !hidden && !output()
+            !entry.file_name().as_encoded_bytes().starts_with(b".") && !is_folder(entry, out.as_deref())
         };
         for entry in walk.filter_entry(is_shown) {
             match entry {
@@ -134,13 +143,10 @@ impl Finder<'_> {
     /// Something in a folder that cannot be opened: a file that a link promises, or a folder.
     fn add_missing(&mut self, folder: &Path, error: &walkdir::Error) -> Outcome {
         let path = error.path().unwrap_or(folder);
-        let is_link = fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
-        if is_link && mesh_extension(path).is_some() {
+        if !is_link(path) {
+            self.add_unlisted(path, &reason(error));
+        } else if mesh_extension(path).is_some() {
             return self.add_file(path, Some(folder));
-        }
-        if !is_link {
-            let problem = error.io_error().map_or_else(|| error.to_string(), ToString::to_string);
-            self.add_unlisted(path, &problem);
         }
         Ok(())
     }
@@ -167,14 +173,18 @@ impl Finder<'_> {
     }
 }
 
-fn is_pattern(text: &str) -> bool {
-    text.contains(['*', '?', '[']) && Pattern::escape(text) != text
+/// Whether an entry is this folder. Asking for the full path of every folder is cheap; of every file it is not.
+fn is_folder(entry: &walkdir::DirEntry, folder: Option<&Path>) -> bool {
+    entry.file_type().is_dir()
+        && folder.is_some_and(|folder| fs::canonicalize(entry.path()).is_ok_and(|entry| entry == folder))
 }
 
-/// The folder before the first part of a pattern that has a wildcard.
-fn pattern_folder(pattern: &Path) -> PathBuf {
-    let parts = pattern.components();
-    parts.take_while(|part| !part.as_os_str().to_str().is_some_and(is_pattern)).collect()
+fn is_link(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink())
+}
+
+fn reason(error: &walkdir::Error) -> String {
+    error.io_error().map_or_else(|| error.to_string(), ToString::to_string)
 }
 
 /// A path without `.` in it.
@@ -185,19 +195,6 @@ fn plain(path: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_folder_of_a_pattern() {
-        for (pattern, folder) in [
-            ("a/b/*.ply", "a/b"),
-            ("*.ply", ""),
-            ("/data/**/x.ply", "/data"),
-            ("a/b?/c/*.obj", "a"),
-            ("../[ab]/c", ".."),
-        ] {
-            assert_eq!(pattern_folder(Path::new(pattern)), Path::new(folder), "{pattern}");
-        }
-    }
 
     #[test]
     fn paths_are_the_same_without_dots() {

@@ -9,6 +9,7 @@ pub(crate) mod inputs;
 pub(crate) mod journal;
 pub(crate) mod names;
 pub(crate) mod past;
+pub(crate) mod pattern;
 pub(crate) mod record;
 pub(crate) mod summary;
 pub(crate) mod work;

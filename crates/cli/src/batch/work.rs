@@ -1,7 +1,7 @@
 //! The work on one mesh: as `wrap` does it, with a record of it at the end.
 
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -46,11 +46,13 @@ impl<'a> Plan<'a> {
 
     /// Makes the points of one mesh. Where that cannot be done there are none afterwards, old ones neither.
     pub(crate) fn work(&self, task: &Task, temporaries: &Path) -> Record {
-        let source = fs::metadata(&task.input).ok().map(|file| Source::of(&file));
+        let file = fs::metadata(&task.input).ok();
+        let source = file.as_ref().map(Source::of);
         let stages = Stages::new(true);
         let made = task.output.clone().and_then(|output| {
             let target = self.target(&output);
-            self.make(&task.input, &target, temporaries, &stages)
+            is_no_pipe(file.as_ref())
+                .and_then(|()| self.make(&task.input, &target, temporaries, &stages))
                 .map_err(|trouble| without_old(trouble, &target))
         });
         let seconds = stages.finish().stages().map(|(stage, seconds)| (stage.to_owned(), seconds)).collect();
@@ -102,9 +104,11 @@ impl<'a> Plan<'a> {
         let mesh = MeshArgs { mesh: path.to_path_buf(), reading: *reading };
         let input = input::read_detail(&mesh, job::detail(placing, &self.carried), &placing.only, stages)
             .map_err(|error| trouble(kind_of(&error, path))(error))?;
-        job::points_fit(&self.options, input.mesh.area(), reading.max_memory)
-            .map_err(trouble(Kind::Options))?;
+        job::points_fit(&self.options, input.mesh.area(), reading).map_err(trouble(Kind::Options))?;
         let ground = weights::prepare(placing, input, self.options).map_err(trouble(Kind::Options))?;
+        // Quotas have other numbers.
+        job::points_fit(&ground.options, ground.input.mesh.area(), reading)
+            .map_err(trouble(Kind::Options))?;
         let run = ground.run(stages).map_err(trouble(Kind::Options))?;
         let (input, samples) = (&ground.input, ground.lifted(&run.samples));
         stages.begin("write", 0);
@@ -131,6 +135,17 @@ impl<'a> Plan<'a> {
             eta: eta.and_then(number),
             repairs: repairs(&input.repaired).map_err(trouble(Kind::Write))?,
         })
+    }
+}
+
+/// Refuses what may never end, or never begin. A folder and what is not there have errors of their own.
+fn is_no_pipe(file: Option<&Metadata>) -> Result<(), Trouble> {
+    match file {
+        Some(file) if !file.is_file() && !file.is_dir() => {
+            let message = "is no regular file but a pipe or a device: name files of meshes".to_owned();
+            Err(Trouble { kind: Kind::Read, message })
+        }
+        _ => Ok(()),
     }
 }
 

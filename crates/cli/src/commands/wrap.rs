@@ -31,8 +31,10 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    job::points_fit(&options, input.mesh.area(), args.mesh.reading.max_memory)?;
+    job::points_fit(&options, input.mesh.area(), &args.mesh.reading)?;
     let ground = weights::prepare(placing, input, options)?;
+    // Quotas have other numbers.
+    job::points_fit(&ground.options, ground.input.mesh.area(), &args.mesh.reading)?;
     let run = ground.run(&stages)?;
     stages.begin("irregularity", 0);
     let irregularity = run.irregularity();

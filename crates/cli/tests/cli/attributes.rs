@@ -218,6 +218,51 @@ fn weights_follow_a_texture_inside_large_faces() {
     assert!((right - due).abs() < 0.03 * due, "{right} of {due}");
 }
 
+/// Properties of a PLY file may be called as what points carry anyway.
+#[test]
+fn names_that_are_taken() {
+    let folder = Folder::new();
+    let numbers = ["b0", "Face", "strip", "normal", "property_b0", "heat"];
+    let properties: String = numbers.iter().map(|name| format!("property float {name}\n")).collect();
+    let text = format!(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{properties}\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n\
+         0 0 0 1 2 3 4 5 6\n1 0 0 1 2 3 4 5 6\n0 1 0 1 2 3 4 5 6\n3 0 1 2\n"
+    );
+    folder.write("taken.ply", text);
+    let wrap = |rest: &str| folder.run(&format!("wrap taken.ply -n 4 -q {rest}")).ok();
+    wrap("-o p.csv --attributes all");
+    let written = folder.text("p.csv");
+    let (head, rows) = written.split_once('\n').expect("a head");
+    let all = "property_property_b0,property_Face,property_strip,property_normal,property_b0,heat";
+    assert!(head.ends_with(&format!(",{all}")), "{head}");
+    assert!(rows.lines().all(|row| row.ends_with(",1.0,2.0,3.0,4.0,5.0,6.0")), "{rows}");
+    for format in ["ply", "npz", "json", "glb", "xyz"] {
+        wrap(&format!("-o p.{format} --attributes all"));
+    }
+    assert!(folder.text("p.json").contains("\"property_normal\""));
+    // Alone they keep their names.
+    wrap("-o q.csv --attributes property:b0,property:Face");
+    assert!(folder.text("q.csv").starts_with("x,y,z,b0,Face\n"));
+}
+
+/// As in CSV and JSON.
+#[test]
+fn names_in_ply_are_utf_8() {
+    let folder = Folder::new();
+    let named = OCTAHEDRON.replace("f 1 3 5", "usemtl \u{dc}ber Lack\no \u{90e8}\u{54c1}\nf 1 3 5");
+    folder.write("named.obj", named);
+    for format in ["ply", "ply-ascii"] {
+        let out = format!("-n 20 -q -o p.ply --format {format} --attributes material,part");
+        folder.run(&format!("wrap named.obj {out}")).ok();
+        let bytes = folder.read("p.ply");
+        let head = String::from_utf8_lossy(&bytes[..bytes.len().min(400)]).into_owned();
+        assert!(head.contains("\ncomment material 0 \u{dc}ber Lack\n"), "{head}");
+        assert!(head.contains("\ncomment part 0 \u{90e8}\u{54c1}\n"), "{head}");
+        folder.run("measure named.obj p.ply").ok();
+    }
+}
+
 #[test]
 fn what_is_not_there_is_said() {
     let folder = textured();

@@ -34,6 +34,20 @@ fn an_empty_file() {
     }
 }
 
+/// What has no length ends at the limit too.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_endless_file() {
+    let folder = Folder::new();
+    folder.run("info /dev/zero --max-memory 4M").failed(&["/dev/zero", "1048576 bytes", "--max-memory"]);
+}
+
+#[test]
+fn text_in_utf_16() {
+    let bytes: Vec<u8> = OCTAHEDRON.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    rejected("a.obj", [&b"\xff\xfe"[..], &bytes].concat(), &["UTF-16", "save it as UTF-8"]);
+}
+
 #[test]
 fn an_unknown_format() {
     rejected("a.docx", "PK\x03\x04 a letter", &["known format", "PLY"]);
@@ -152,4 +166,28 @@ fn more_than_the_memory_allowed() {
     run("-n 10 --max-memory 1M").ok();
     run("-n 10 --max-memory 1Q").refused(&["--max-memory"]);
     run("-n 10 --max-memory 0").refused(&["--max-memory"]);
+    // No machine has 31 TB.
+    run("-n 4294967295").failed(&["4294967295 points", "without --max-memory", "raise --max-memory"]);
+    run("--per-component 4294967295").failed(&["without --max-memory"]);
+    run("--density 1e12").failed(&["without --max-memory"]);
+}
+
+/// Refused in words, not by an abort.
+#[cfg(target_os = "linux")]
+#[test]
+fn more_than_the_shell_allows() {
+    let folder = Folder::with_octahedron();
+    let wrap = format!(
+        "ulimit -v 3000000; exec '{}' wrap octahedron.obj --threads 1 -o p.xyz -n",
+        env!("CARGO_BIN_EXE_ldwrap-cli")
+    );
+    let run = |count: &str| {
+        let mut shell = std::process::Command::new("sh");
+        let output = shell.args(["-c", &format!("{wrap} {count}")]).current_dir(folder.path("")).output();
+        let output = output.expect("the shell runs");
+        (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    };
+    let (code, told) = run("300000000");
+    assert!(code == Some(1) && told.contains("no more are taken than 2304: ask"), "{told}");
+    assert_eq!(run("100").0, Some(0));
 }

@@ -92,8 +92,8 @@ fn planes_worth_few_points_get_their_share_to_within_one() {
         let bar = mesh(&stretched(shapes::cube(k)));
         for n in [3, 8, 20, 60, 150] {
             let result = equalized(&bar, &baseline::random(&bar, n, 4), 5);
-            for axis in 0..3 {
-                let due = n as f64 * areas[axis] / 250.0;
+            for (axis, area) in areas.iter().enumerate() {
+                let due = n as f64 * area / 250.0;
                 for side in [-1.0, 1.0] {
                     let is_there = |p: &&SurfacePoint| bar.face_normal(p.face)[axis] * side > 0.5;
                     let count = result.points.iter().filter(is_there).count();
@@ -105,6 +105,22 @@ fn planes_worth_few_points_get_their_share_to_within_one() {
                 }
             }
         }
+    }
+}
+
+/// Halved again and again across its longest side a needle would fall into millions of tiles.
+#[test]
+fn needles_are_cut_across() {
+    for height in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let mut soup = PolygonSoup::default();
+        soup.positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.3, height, 0.0)];
+        soup.push_polygon(&[0, 1, 2]);
+        let needle = mesh(&soup);
+        let result = equalized(&needle, &baseline::random(&needle, 300, 1), 5);
+        assert!(result.report.spread_after < 0.02, "height {height}: {:?}", result.report);
+        // Along the needle a share x (x / 0.3) lies before x up to 0.3: half of the points lie before 0.4084.
+        let before = result.points.iter().filter(|p| needle.locate(p).x < 1.0 - libm::sqrt(0.35)).count();
+        assert!(before.abs_diff(150) <= 1, "height {height}: {before}");
     }
 }
 

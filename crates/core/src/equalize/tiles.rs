@@ -43,12 +43,19 @@ pub(super) struct Scale<'a> {
     pub(super) middle: DVec3,
 }
 
-/// No side of a tile is longer than this many distances of the points there, but for needles: see [`MOST`].
+/// No side of a tile is longer than this many distances of the points there, but for slender ones: see [`SLICE`].
 const LONGEST: f64 = 1.0;
 
-/// A face is cut into about this many tiles at most, and as many more for each point that is due on it: a needle 1e12 times
-/// as long as wide would make millions. No face shorter than 32 distances of the points comes near it.
-const MOST: f64 = 64.0;
+/// A slender face is cut into about this many tiles at most, and as many more for each point that is due on it: a needle 1e12
+/// times as long as wide would make millions. None shorter than 32 distances of the points comes near it.
+const MOST: f64 = 256.0;
+
+/// A triangle whose longest side, squared, is more than so many times its area is slender.
+const SLENDER: f64 = 32.0;
+
+/// Slender faces are cut into slices of so many distances of the points: where points stand in a row there is nothing else
+/// to balance them by.
+const SLICE: f64 = 0.25;
 
 /// Where few points are due, tiles and normals are scaled as if this share of the mean density were.
 const SPARSEST: f64 = 0.1;
@@ -82,8 +89,10 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
         Vec::new()
     };
     let shared = places.len() as u32;
-    let (low, _) = mesh.bounds();
+    let (low, high) = mesh.bounds();
     let from_low = scale.middle - low;
+    // On needles cubes of clumps are smaller than what keys tell apart.
+    let smallest = (high - low).max_element() / KEYS;
     let pieces = parallel::map_chunks(mesh.face_count(), CHUNK, |range| {
         let mut cut = Cut { places: Vec::new(), tiles: Vec::with_capacity(range.len()) };
         for index in range {
@@ -119,7 +128,7 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
                     }
                     let halvings = libm::log2(density.max(1.0)) * 0.5;
                     let side = CLUMP * scale.d_m * libm::exp2(-libm::floor(halvings));
-                    let cube = cell_key((a + b + c) / 3.0 + from_low, side);
+                    let cube = cell_key((a + b + c) / 3.0 + from_low, side.max(smallest));
                     let tile = Tile { corners: corners.map(|c| c.id), face, patch, mass, area };
                     Some(((patch, halvings as u32, cube), tile))
                 },
@@ -172,10 +181,15 @@ struct Corner {
 
 /// How long the sides of a face's tiles may be.
 fn longest_side([a, b, c]: [DVec3; 3], distance: f64) -> f64 {
-    let length = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    let due = triangle::area(a, b, c) / (distance * distance);
-    // Halving makes tiles half as long as they may be.
-    (LONGEST * distance).max(2.0 * length / (MOST * (1.0 + due)))
+    let (_, squared) = triangle::longest_side([a, b, c]);
+    let (length, area) = (libm::sqrt(squared), triangle::area(a, b, c));
+    let due = area / (distance * distance);
+    if squared > SLENDER * area {
+        // Two tiles a slice.
+        (SLICE * distance).max(2.0 * length / (MOST * (1.0 + due)))
+    } else {
+        LONGEST * distance
+    }
 }
 
 impl Cut {
@@ -186,12 +200,40 @@ impl Cut {
         Corner { id, place, density }
     }
 
-    fn middle(&mut self, first: u32, a: &Corner, b: &Corner) -> Corner {
+    /// The corner so far on the way from one to another.
+    fn between(&mut self, first: u32, [a, b]: [&Corner; 2], way: f64) -> Corner {
         let place = Place {
-            position: (a.place.position + b.place.position) * 0.5,
-            normal: (a.place.normal + b.place.normal) * 0.5,
+            position: a.place.position.lerp(b.place.position, way),
+            normal: a.place.normal.lerp(b.place.normal, way),
         };
-        self.corner(first, place, (a.density + b.density) * 0.5)
+        self.corner(first, place, a.density + (b.density - a.density) * way)
+    }
+
+    /// Cuts a slender triangle across: halving would make 3^k tiles of a needle to make them 2^k times as short.
+    fn slice(
+        &mut self,
+        [from, to, apex]: [Corner; 3],
+        longest: f64,
+        tile: &mut impl FnMut([Corner; 3]) -> Option<(Key, Tile)>,
+        first: u32,
+    ) {
+        let along = to.place.position - from.place.position;
+        let way = (apex.place.position - from.place.position).dot(along) / along.length_squared();
+        let foot = self.between(first, [&from, &to], way.clamp(0.0, 1.0));
+        for [tip, left, right] in [[from, foot, apex], [to, apex, foot]] {
+            let length = (foot.place.position - tip.place.position).length();
+            let slices = libm::ceil(length / longest);
+            let mut last = [tip; 2];
+            for k in 1..=slices as u32 {
+                let way = f64::from(k) / slices;
+                let next = [left, right].map(|end| self.between(first, [&tip, &end], way));
+                self.tiles.extend(tile([last[0], next[0], next[1]]));
+                if k > 1 {
+                    self.tiles.extend(tile([last[0], next[1], last[1]]));
+                }
+                last = next;
+            }
+        }
     }
 
     /// Halves a triangle across its longest side until no side is longer than `longest`.
@@ -208,11 +250,19 @@ impl Cut {
             return;
         }
         let [from, to, apex] = [0, 1, 2].map(|turn| corners[(start + turn) % 3]);
-        let middle = self.middle(first, &from, &to);
+        let [a, b, c] = corners.map(|c| c.place.position);
+        if squared > SLENDER * triangle::area(a, b, c) {
+            self.slice([from, to, apex], longest, tile, first);
+            return;
+        }
+        let middle = self.between(first, [&from, &to], 0.5);
         self.split([from, middle, apex], longest, tile, first);
         self.split([middle, to, apex], longest, tile, first);
     }
 }
+
+/// So many cubes along each axis are told apart, a few less than there are numbers.
+const KEYS: f64 = 2_097_000.0;
 
 /// The cube of side `cell` that holds `p` (coordinates not negative), numbered along a Morton curve.
 pub(super) fn cell_key(p: DVec3, cell: f64) -> u64 {

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::io::text::text;
+
 /// How many bytes are looked at for the words of an OBJ or STL file.
 const LOOK: usize = 64 * 1024;
 
@@ -80,8 +82,8 @@ fn by_content(bytes: &[u8]) -> Option<MeshFormat> {
     if binary_stl_count(bytes).is_some_and(|count| bytes.len() as u64 == binary_stl_size(count)) {
         return Some(MeshFormat::Stl);
     }
-    let start = String::from_utf8_lossy(&bytes[..bytes.len().min(LOOK)]);
-    let start = start.trim_start_matches('\u{feff}').trim_start();
+    let start = text(&bytes[..bytes.len().min(LOOK)]);
+    let start = start.trim_start();
     if start.starts_with('{') && start.contains("\"asset\"") {
         return Some(MeshFormat::Gltf);
     }
@@ -94,7 +96,7 @@ fn by_content(bytes: &[u8]) -> Option<MeshFormat> {
             return Some(MeshFormat::Off);
         }
         let is_stl = |word: &str| word.eq_ignore_ascii_case("facet") || word.eq_ignore_ascii_case("endsolid");
-        if first == "solid" && words.any(is_stl) {
+        if first == "solid" && (is_binary_stl(bytes) || words.any(is_stl)) {
             return Some(MeshFormat::Stl);
         }
     }
@@ -114,6 +116,12 @@ fn starts_number(word: &str) -> bool {
 pub(super) fn binary_stl_count(bytes: &[u8]) -> Option<u32> {
     let count = bytes.get(80..84)?;
     Some(u32::from_le_bytes([count[0], count[1], count[2], count[3]]))
+}
+
+/// Whether a file that may be binary STL has all the triangles that it claims, and perhaps more bytes. As a number of
+/// triangles, four letters are more than any text has room for.
+pub(super) fn is_binary_stl(bytes: &[u8]) -> bool {
+    binary_stl_count(bytes).is_some_and(|count| binary_stl_size(count) <= bytes.len() as u64)
 }
 
 /// How long a binary STL file of this many triangles is.
@@ -142,6 +150,8 @@ mod tests {
         binary.resize(84 + 100, 0);
         binary[80] = 2;
         assert_eq!(detected(&binary), Some(MeshFormat::Stl));
+        assert_eq!(detected(&[&binary[..], b"and more"].concat()), Some(MeshFormat::Stl));
+        assert_eq!(detected(b"# made by\rv 0 0 0\rv 1 0 0\r"), Some(MeshFormat::Obj));
     }
 
     #[test]

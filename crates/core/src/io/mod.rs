@@ -18,6 +18,7 @@ mod read;
 mod select;
 #[cfg(feature = "stl")]
 pub mod stl;
+mod text;
 
 pub use clip::ClipError;
 pub use detect::{MeshFormat, detect};

@@ -10,7 +10,8 @@ use tobj::{LoadError, LoadOptions};
 
 use crate::io::detect::MeshFormat;
 use crate::io::limits::Limits;
-use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon, text};
+use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon};
+use crate::io::text::text;
 use crate::mesh::PolygonSoup;
 
 /// Reads an OBJ file: all its vertices and its faces with any number of corners; relative (negative) indices and
@@ -22,10 +23,10 @@ pub fn read(bytes: &[u8]) -> Result<PolygonSoup, ReadError> {
     read_text(&text(bytes), &Limits::default())
 }
 
-/// Reads an OBJ file with the normals (`vn`), texture coordinates (`vt`) and colours (three sRGB numbers from 0 to 1
-/// behind the position) of its corners, the parts (`o` and `g`, whichever came last) and names of materials; for
+/// Reads an OBJ file with the normals (`vn`), texture coordinates (`vt`) and colours (three sRGB numbers behind
+/// the position, from 0 to 1, or from 0 to 255 if any is 2 or more) of its corners, the parts (`o` and `g`, whichever came last) and names of materials; for
 /// [`Detail::Textures`] also its material libraries (`mtllib`): `Kd` (sRGB), `d` or `Tr`, and `map_Kd` with its
-/// options `-o`, `-s` and `-clamp`.
+/// options `-o`, `-s` and `-clamp`. Comments behind names, and quotation marks around them, are no part of them.
 ///
 /// # Errors
 /// [`ReadError`]: with the line; a material library or picture that the resolver does not have.
@@ -113,6 +114,19 @@ fn plain(text: &str) -> (String, usize) {
 fn behind_all(vertices: usize, plain: String) -> String {
     let all: String = (1..=vertices).fold("f".into(), |all, vertex: usize| all + " " + &vertex.to_string());
     all + "\n" + &plain
+}
+
+/// A name without the comment behind it, and without the quotation marks around it. A `#` that stands right before a
+/// letter or digit belongs to the name, as in `Material #25`.
+fn without_comment(name: &str) -> &str {
+    let is_comment = |&at: &usize| {
+        let (before, after) = (&name[..at], &name[at + 1..]);
+        (before.is_empty() || before.ends_with(char::is_whitespace))
+            && (after.is_empty() || after.starts_with(char::is_whitespace))
+    };
+    let comment = name.match_indices('#').map(|(at, _)| at).find(is_comment);
+    let name = name[..comment.unwrap_or(name.len())].trim();
+    name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name)
 }
 
 /// Calls `f` with every line, and how many lines of the file it takes: those that end in `\` go on in the next.
@@ -231,6 +245,58 @@ mod tests {
             of,
             [(3, Some("a")), (3, Some("b")), (3, Some("b")), (3, Some("b")), (0, Some("b")), (3, Some("c"))]
         );
+    }
+
+    #[test]
+    fn names_end_before_comments() {
+        for (name, bare) in [
+            (" m # c", "m"),
+            ("m #", "m"),
+            ("m\t# a # b", "m"),
+            ("Material #25", "Material #25"),
+            ("a#b", "a#b"),
+            ("\"oak wood\" # c", "oak wood"),
+            ("\"", "\""),
+            ("# c", ""),
+        ] {
+            assert_eq!(without_comment(name), bare, "{name}");
+        }
+    }
+
+    fn attributes(text: &str) -> crate::attributes::MeshAttributes {
+        let model = read_model(text.as_bytes(), Detail::Attributes, &|_| Err(String::new()));
+        model.unwrap_or_else(|error| panic!("{text}: {error}")).attributes
+    }
+
+    #[test]
+    fn colors_up_to_1_or_255() {
+        for (white, grey, largest) in [("1", "0.5", 1.0), ("255", "128", 255.0), ("1.0000001", "0.5", 1.0)] {
+            let text = format!("v 0 0 0 {white} {grey} 0\nv 1 0 0 0 0 0\nv 0 1 0 nan 0 0\nf 1 2 3\n");
+            let colors = attributes(&text).colors;
+            let grey = crate::attributes::from_srgb(grey.parse::<f64>().unwrap() / largest);
+            assert_eq!(colors.get(0), Some(glam::DVec4::new(1.0, grey, 0.0, 1.0)), "{text}");
+            assert_eq!(colors.get(1), Some(glam::DVec4::W));
+            assert_eq!(colors.get(2), None);
+        }
+    }
+
+    /// As in glTF: such normals are none, such coordinates stay as they are.
+    #[test]
+    fn attributes_that_are_not_finite() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn nan nan nan\nvn -1.#IND 0 1\nvn 0 0 2\nvt nan inf\nvt 0.5 0.25\n\
+                    f 1/1/1 2/2/2 3/2/3\n";
+        let found = attributes(text);
+        assert_eq!(
+            [0, 1, 2].map(|corner| found.normals.get(corner).unwrap()),
+            [DVec3::ZERO, DVec3::ZERO, DVec3::Z]
+        );
+        let uv = found.uv[0].get(0).unwrap();
+        assert!(uv.x.is_nan() && uv.y == f64::INFINITY);
+        for wrong in ["vn 1 2\n", "vn 1 two 3\n", "vt\n"] {
+            let text = text.to_owned() + wrong;
+            let error = read_model(text.as_bytes(), Detail::Attributes, &|_| Err(String::new())).unwrap_err();
+            assert!(error.to_string().starts_with("OBJ, line 10"), "{error}");
+        }
     }
 
     #[test]

@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3, DVec4};
 use crate::attributes::{CornerValues, MeshAttributes, from_srgb};
 use crate::io::detect::MeshFormat;
 use crate::io::limits::Limits;
-use crate::io::read::{Detail, Model, Place, ReadError, brief, push_polygon, text};
+use crate::io::read::{Detail, Model, Place, ReadError, brief, push_polygon};
+use crate::io::text::text;
 use crate::mesh::PolygonSoup;
 
 /// Reads `OFF`, also with texture coordinates, colours, normals (`ST`, `C`, `N` before the word). Polygons may have any number of corners; comments, empty lines, counts in the first line and a missing

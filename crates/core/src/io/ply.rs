@@ -1,5 +1,6 @@
-//! Reads PLY files in all three encodings, with `ply-rs-bw`.
+//! Reads PLY files in all three encodings: headers and binary data with `ply-rs-bw`, text in `ascii`.
 
+mod ascii;
 mod attributes;
 
 use std::io::ErrorKind;
@@ -16,6 +17,7 @@ use crate::io::detect::MeshFormat;
 use crate::io::limits::Limits;
 use crate::io::read::{Detail, Model, Place, ReadError, Resolver, brief, push_polygon};
 use crate::mesh::PolygonSoup;
+use ascii::Lines;
 use attributes::{Face, Faces, Record};
 
 /// Reads a PLY file: `x`, `y`, `z` of the element `vertex` in any type of number, the list `vertex_indices` or
@@ -47,64 +49,56 @@ pub(super) fn read_within(
     resolver: &Resolver<'_>,
 ) -> Result<Model, ReadError> {
     let (header, start) = read_header(bytes)?;
-    let mut reader = Reader::new(&bytes[start..]);
+    let text =
+        String::from_utf8_lossy(if header.encoding == Encoding::Ascii { &bytes[start..] } else { &[] });
+    let mut data = match header.encoding {
+        Encoding::Ascii => Data::Text(Lines::new(&text, header_lines(&bytes[..start]))),
+        _ => Data::Binary(Reader::new(&bytes[start..]), &header),
+    };
     let mut soup = PolygonSoup::default();
-    let header_lines = bytes[..start].iter().filter(|&&byte| byte == b'\n').count();
     let (mut vertices, mut face_values) = (Vec::<Record>::new(), Faces::default());
     for element in header.elements.values() {
-        check_count(element, &header, reader.get_ref().len())?;
-        let error = |error| explain(error, &header, bytes, header_lines);
+        check_count(element, &header, data.remaining())?;
         match element.name.as_str() {
             "vertex" => {
                 require(element, &["x", "y", "z"], |kind| matches!(kind, PropertyType::Scalar(_)))?;
                 limits.vertices(MeshFormat::Ply, Place::File, element.count)?;
                 if detail >= Detail::Attributes {
-                    let parser = Parser::<Record>::new();
-                    vertices =
-                        parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
+                    vertices = data.records::<Record>(element)?;
                     soup.positions = attributes::positions(element, &vertices);
                     continue;
                 }
-                soup.positions.reserve(element.count);
-                in_blocks(&mut reader, element, &header, |vertices: Vec<Vertex>| {
+                soup.positions.reserve(data.likely(element));
+                data.in_blocks(element, |vertices: Vec<Vertex>| {
                     soup.positions.extend(vertices.into_iter().map(|v| v.0));
                     Ok(())
-                })
-                .map_err(|failure| failure.explained(error))?;
+                })?;
             }
             "face" => {
                 require_corners(element)?;
                 if detail >= Detail::Attributes {
-                    let parser = Parser::<Face>::new();
-                    let faces =
-                        parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
+                    let faces = data.records::<Face>(element)?;
                     face_values.add(element, &faces, &mut soup, limits)?;
                     continue;
                 }
-                soup.ends.reserve(element.count);
-                soup.corners.reserve(element.count.saturating_mul(3));
+                soup.ends.reserve(data.likely(element));
+                soup.corners.reserve(3 * data.likely(element));
                 let mut first = 0;
-                in_blocks(&mut reader, element, &header, |faces: Vec<Corners>| {
+                data.in_blocks(element, |faces: Vec<Corners>| {
                     add_faces(&mut soup, first, faces.iter().map(|face| &face.0[..]), limits)?;
                     first += faces.len();
                     Ok(())
-                })
-                .map_err(|failure| failure.explained(error))?;
+                })?;
             }
             "tristrips" => {
                 require_corners(element)?;
-                let parser = Parser::<Corners>::new();
-                let strips = parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
-                for (index, strip) in strips.iter().enumerate() {
+                for (index, strip) in data.records::<Corners>(element)?.iter().enumerate() {
                     add_strip(&mut soup, index, &strip.0, limits)?;
                 }
             }
-            // Binary elements without properties take no bytes, however many there are.
-            _ if element.properties.is_empty() && header.encoding != Encoding::Ascii => {}
-            _ => {
-                let parser = Parser::<Passed>::new();
-                parser.read_payload_for_element(&mut reader, element, &header).map_err(error)?;
-            }
+            // Elements without properties take no bytes, however many there are.
+            _ if element.properties.is_empty() => {}
+            _ => drop(data.records::<Passed>(element)?),
         }
     }
     let mut found = MeshAttributes::default();
@@ -117,44 +111,71 @@ pub(super) fn read_within(
     Ok(Model { soup, attributes: found })
 }
 
-/// Why a block was not taken.
-enum Failure {
-    Parse(ParseError),
-    Read(ReadError),
+/// What follows the header.
+enum Data<'a> {
+    Text(Lines<'a>),
+    Binary(Reader<&'a [u8]>, &'a Header),
 }
 
-impl Failure {
-    fn explained(self, explain: impl FnOnce(ParseError) -> ReadError) -> ReadError {
+impl Data<'_> {
+    fn remaining(&self) -> usize {
         match self {
-            Self::Parse(error) => explain(error),
-            Self::Read(error) => error,
+            Self::Text(lines) => lines.remaining(),
+            Self::Binary(reader, _) => reader.get_ref().len(),
         }
     }
+
+    fn records<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<Vec<E>, ReadError> {
+        match self {
+            Self::Text(lines) => lines.records(element),
+            Self::Binary(reader, header) => {
+                Parser::<E>::new().read_payload_for_element(reader, element, header).map_err(|e| explain(&e))
+            }
+        }
+    }
+
+    /// How many of the elements are sure to be there if each is three singles, or three corners.
+    fn likely(&self, element: &ElementDef) -> usize {
+        element.count.min(self.remaining() / 12)
+    }
+
+    /// As [`records`](Self::records); binary ones block by block, so that not all are there twice.
+    fn in_blocks<E: PropertyAccess>(
+        &mut self,
+        element: &ElementDef,
+        mut take: impl FnMut(Vec<E>) -> Result<(), ReadError>,
+    ) -> Result<(), ReadError> {
+        const BLOCK: usize = 1 << 12;
+        if let Self::Text(lines) = self {
+            return take(lines.records(element)?);
+        }
+        let mut block = element.clone();
+        for start in (0..element.count).step_by(BLOCK) {
+            block.count = BLOCK.min(element.count - start);
+            take(self.records(&block)?)?;
+        }
+        Ok(())
+    }
 }
 
-/// Reads an element block by block, so that not all of it is there twice.
-fn in_blocks<E: PropertyAccess>(
-    reader: &mut Reader<&[u8]>,
-    element: &ElementDef,
-    header: &Header,
-    mut take: impl FnMut(Vec<E>) -> Result<(), ReadError>,
-) -> Result<(), Failure> {
-    const BLOCK: usize = 1 << 12;
-    let parser = Parser::<E>::new();
-    let mut block = element.clone();
-    for start in (0..element.count).step_by(BLOCK) {
-        block.count = BLOCK.min(element.count - start);
-        let elements = parser.read_payload_for_element(reader, &block, header).map_err(Failure::Parse)?;
-        take(elements).map_err(Failure::Read)?;
-    }
-    Ok(())
+/// The end of its lines: some files have carriage returns alone.
+fn line_end(bytes: &[u8]) -> u8 {
+    if bytes.starts_with(b"ply\r") && bytes.get(4) != Some(&b'\n') { b'\r' } else { b'\n' }
+}
+
+fn header_lines(header: &[u8]) -> usize {
+    let end = line_end(header);
+    header.iter().filter(|&&byte| byte == end).count()
 }
 
 /// The header, and where the data starts.
 fn read_header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
-    const END: &[u8] = b"\nend_header";
-    let end = bytes.windows(END.len()).position(|window| window == END);
-    let line_break = end.and_then(|end| Some(end + 1 + bytes[end + 1..].iter().position(|&b| b == b'\n')?));
+    const END: &[u8] = b"end_header";
+    let new_line = line_end(bytes);
+    let is_end = |window: &[u8]| window[0] == new_line && &window[1..] == END;
+    let end = bytes.windows(1 + END.len()).position(is_end);
+    let line_break =
+        end.and_then(|end| Some(end + 1 + bytes[end + 1..].iter().position(|&b| b == new_line)?));
     let Some(line_break) = line_break else {
         return Err(ReadError::Truncated {
             format: MeshFormat::Ply,
@@ -163,7 +184,12 @@ fn read_header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
         });
     };
     // Comments in old encodings: the library takes ASCII only.
-    let text: Vec<u8> = bytes[..=line_break].iter().map(|&b| if b.is_ascii() { b } else { b'?' }).collect();
+    let plain = |&byte: &u8| match byte {
+        byte if byte == new_line => b'\n',
+        byte if byte.is_ascii() => byte,
+        _ => b'?',
+    };
+    let text: Vec<u8> = bytes[..=line_break].iter().map(plain).collect();
     let header = Parser::<Passed>::new()
         .read_header(&mut Reader::new(&text[..]))
         .map_err(|e| malformed(e.line().map_or(Place::File, Place::Line), first_line(&e)))?;
@@ -185,7 +211,7 @@ fn check_count(element: &ElementDef, header: &Header, remaining: usize) -> Resul
         ScalarType::Double => 8,
     };
     let smallest: usize = match header.encoding {
-        Encoding::Ascii => (2 * element.properties.len()).max(1),
+        Encoding::Ascii => 2 * element.properties.len(),
         _ => element
             .properties
             .values()
@@ -275,30 +301,12 @@ pub(super) fn first_line(error: &ParseError) -> String {
     format!("{} {}", line(start), line(cause)).trim_end().to_string()
 }
 
-fn explain(error: ParseError, header: &Header, bytes: &[u8], header_lines: usize) -> ReadError {
-    let (format, mut problem) = (MeshFormat::Ply, first_line(&error));
-    let place = match (header.encoding, error.line()) {
-        (Encoding::Ascii, Some(line)) => {
-            // The library counts on from 1 behind the header.
-            let line = header_lines + line;
-            if let Some(word) = wrong_word(bytes, line) {
-                problem = format!("{:?} stands where a finite number must be", brief(&word));
-            }
-            Place::Line(line)
-        }
-        _ => Place::File,
-    };
+fn explain(error: &ParseError) -> ReadError {
+    let (format, place, problem) = (MeshFormat::Ply, Place::File, first_line(error));
     match error.kind() {
         ErrorKind::UnexpectedEof => ReadError::Truncated { format, place, problem },
         _ => ReadError::Malformed { format, place, problem },
     }
-}
-
-/// The first word of a line, counted from 1, that is no finite number: the library does not say which it is.
-fn wrong_word(bytes: &[u8], line: usize) -> Option<String> {
-    let text = String::from_utf8_lossy(bytes.split(|&byte| byte == b'\n').nth(line.checked_sub(1)?)?);
-    let mut words = text.split_ascii_whitespace();
-    words.find(|word| !word.parse::<f64>().is_ok_and(f64::is_finite)).map(str::to_owned)
 }
 
 /// An element that is passed over.

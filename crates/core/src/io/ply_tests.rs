@@ -71,7 +71,19 @@ fn every_encoding_and_type_of_index() {
     }
     let other_name = ascii("int").replace("vertex_indices", "vertex_index");
     assert_eq!(read(other_name.as_bytes()).unwrap(), expected());
-    assert_eq!(read(ascii("int").replace('\n', "\r\n").as_bytes()).unwrap(), expected());
+    let text = ascii("int");
+    let (head, data) = text.split_once("end_header\n").unwrap();
+    for same in [
+        text.replace('\n', "\r\n"),
+        text.replace('\n', "\r"),
+        format!("{head}end_header\n{}", data.replace('\n', "\n \n")),
+        format!(
+            "{head}end_header\n{}",
+            data.replace("0e0 0 200 0", "0. .0 200 0").replace("0.5 200", ".5 200")
+        ),
+    ] {
+        assert_eq!(read(same.as_bytes()).unwrap(), expected(), "{same}");
+    }
 }
 
 #[test]
@@ -136,4 +148,25 @@ fn bad_files_are_named() {
     assert_eq!(lying[start], 4);
     lying[start] = 255;
     assert!(matches!(read(&lying), Err(ReadError::Truncated { .. })));
+}
+
+/// What is not finite is told as in binary files, where it is asked for; a position must be finite.
+#[test]
+fn numbers_that_are_not_finite() {
+    let head = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                property float nx\nproperty float ny\nproperty float nz\nproperty double heat\n\
+                element face 1\nproperty list uchar int vertex_indices\nproperty float quality\nend_header\n";
+    let text =
+        format!("{head}0 0 0 0 0 1 nan\n1 0 0 -nan(ind) 0 1 -inf\n0 1 0 0 0 1 -1.#IND\n3 0 1 2 1.#INF\n");
+    assert_eq!(read(text.as_bytes()).unwrap().polygon_count(), 1);
+    let model = read_model(text.as_bytes(), Detail::Attributes, &|_| Err(String::new())).unwrap();
+    let (name, heat) = model.attributes.numbers.last().unwrap();
+    assert_eq!(name, "heat");
+    let heat = [0, 1, 2].map(|corner| heat.get(corner).unwrap());
+    assert!(heat[0].is_nan() && heat[1] == f64::NEG_INFINITY && heat[2].is_nan(), "{heat:?}");
+    assert_eq!(model.attributes.normals.get(1), Some(DVec3::ZERO));
+    assert_eq!(model.attributes.normals.get(0), Some(DVec3::Z));
+    // The check of the soup tells the vertex.
+    let soup = read(text.replace("\n0 1 0", "\n0 nan 0").as_bytes()).unwrap();
+    assert!(soup.positions[2].y.is_nan());
 }

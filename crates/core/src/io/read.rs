@@ -229,6 +229,12 @@ pub fn read_model_with(
     let ReadOptions { format, name, detail, limits } = *options;
     let bytes = unpacked(bytes, limits.bytes)?;
     let name = name.map(|name| name.strip_suffix(".gz").unwrap_or(name));
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        // A binary STL file may start with these bytes too.
+        if format != Some(MeshFormat::Stl) && detect(&bytes, None).is_none() {
+            return Err(foreign(&bytes));
+        }
+    }
     let Some(format) = format.or_else(|| detect(&bytes, name)) else { return Err(foreign(&bytes)) };
     if bytes.len() as u64 > limits.bytes {
         let (place, what) = (Place::File, "bytes");
@@ -256,7 +262,10 @@ pub fn read_model_with(
 /// What a file is, told by its first bytes, that is no mesh to be read here.
 fn foreign(bytes: &[u8]) -> ReadError {
     const CONVERT: &str = "convert it to OBJ, glTF, GLB, PLY, STL or OFF";
-    let kinds: [(&[u8], &str, &str); 10] = [
+    const ENCODE: &str = "save it as UTF-8 or ASCII";
+    let kinds: [(&[u8], &str, &str); 12] = [
+        (b"\xff\xfe", "text in UTF-16", ENCODE),
+        (b"\xfe\xff", "text in UTF-16", ENCODE),
         (b"Kaydara FBX Binary", "FBX", CONVERT),
         (b"; FBX", "FBX", CONVERT),
         (b"BLENDER", "a Blender file", "export it to OBJ, glTF, GLB, PLY or STL"),
@@ -320,12 +329,6 @@ fn unpacked(bytes: &[u8], most: u64) -> Result<Cow<'_, [u8]>, ReadError> {
             "this build unpacks nothing; build ldwrap with the feature gz, or unpack the file first";
         Err(ReadError::Compressed { problem: problem.to_owned() })
     }
-}
-
-/// Text of any encoding whose words and numbers are ASCII, without byte order mark; bytes that are not UTF-8 (old
-/// comments) are replaced.
-pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
-    String::from_utf8_lossy(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes))
 }
 
 /// The start of what a file or a library says, on one line, for messages.

@@ -4,9 +4,10 @@ use std::io::{Cursor, ErrorKind};
 
 use glam::DVec3;
 
-use crate::io::detect::{MeshFormat, binary_stl_count, binary_stl_size};
+use crate::io::detect::{MeshFormat, binary_stl_count, binary_stl_size, is_binary_stl};
 use crate::io::limits::Limits;
-use crate::io::read::{Detail, Model, Place, ReadError, brief, push_polygon, text};
+use crate::io::read::{Detail, Model, Place, ReadError, brief, push_polygon};
+use crate::io::text::text;
 use crate::mesh::PolygonSoup;
 
 /// Reads an STL file with the names of its solids as parts, which binary files do not have.
@@ -42,8 +43,8 @@ pub(super) fn read_within(bytes: &[u8], detail: Detail, limits: &Limits) -> Resu
 
 /// Whether a file is text.
 fn is_ascii(bytes: &[u8]) -> bool {
-    let is_whole = binary_stl_count(bytes).map(binary_stl_size) == Some(bytes.len() as u64);
-    !is_whole && text(&bytes[..bytes.len().min(512)]).trim_start().to_ascii_lowercase().starts_with("solid")
+    !is_binary_stl(bytes)
+        && text(&bytes[..bytes.len().min(512)]).trim_start().to_ascii_lowercase().starts_with("solid")
 }
 
 /// Reads an STL file. Every triangle gets its own three vertices: checking the soup welds them. Binary files that
@@ -92,13 +93,16 @@ fn read_shape(bytes: &[u8], limits: &Limits) -> Result<PolygonSoup, ReadError> {
     Ok(soup)
 }
 
-/// The text cut into one string a solid, as the library expects it: small letters, a name, an end.
+/// The text cut into one string a solid, as the library expects it: small letters, a name, an end; normals that are
+/// numbers, which nobody reads.
 fn solids(text: &str) -> Vec<String> {
     let mut solids = Vec::new();
     let mut solid = String::new();
     for line in text.lines() {
         let line = line.trim().to_ascii_lowercase();
-        match line.split_whitespace().next() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("facet") if words.next() == Some("normal") => solid.push_str("facet normal 0 0 0\n"),
             Some("solid") => solid = "solid x\n".into(),
             Some("endsolid") => {
                 solid.push_str("endsolid\n");
@@ -177,6 +181,8 @@ endsolid name
             TEXT.to_uppercase(),
             TEXT.replace(" name", ""),
             TEXT.replace('\n', "\r\n"),
+            TEXT.replace('\n', "\r"),
+            TEXT.replace("normal 0 0 1", "normal nan inf -1.#IND"),
             format!("\u{feff}  {TEXT}\n\n"),
         ] {
             assert_eq!(read(same.as_bytes()).unwrap(), soup, "{same}");
@@ -192,9 +198,11 @@ endsolid name
             assert_eq!((soup.positions.len(), soup.polygon_count()), (6, 2));
             assert_eq!(soup.positions[3], DVec3::Z);
         }
-        let mut longer = binary(b"x", 1);
-        longer.extend(b"trailing");
-        assert_eq!(read(&longer).unwrap().polygon_count(), 1);
+        for head in [&b"x"[..], b"solid x"] {
+            let mut longer = binary(head, 1);
+            longer.extend(b"trailing");
+            assert_eq!(read(&longer).unwrap().polygon_count(), 1);
+        }
     }
 
     #[test]

@@ -123,6 +123,30 @@ fn links_are_followed_and_loops_are_not() {
         symlink(to, folder.path(link)).expect("a link");
     }
     assert_eq!(outputs(&folder, "in", ""), ["a.ply", "b.ply", "deep/c.ply"]);
+    assert_eq!(outputs(&folder, "in/**/*.obj", ""), ["a.ply", "b.ply", "deep/c.ply"]);
+    symlink("nowhere", folder.path("in/lost.obj")).expect("a link");
+    let told = folder.run("batch in/*.obj -o lost -n 5").says(&["1 of 3 meshes failed"]);
+    assert_eq!(told.code, 1);
+}
+
+/// A pipe that nobody writes to would be waited for.
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_failures() {
+    let folder = with_meshes(&["in/a.obj", "in/c.obj"]);
+    folder
+        .write("in/d.obj", format!("mtllib pipe.mtl\n{OCTAHEDRON}").replace("f 1 3 5", "usemtl m\nf 1 3 5"));
+    for pipe in ["in/b.obj", "in/pipe.mtl"] {
+        let made = std::process::Command::new("mkfifo").arg(folder.path(pipe)).status();
+        assert!(made.expect("mkfifo runs").success());
+    }
+    for (meshes, out) in [("in", "1"), ("in/*.obj", "2"), ("in/a.obj in/b.obj in/c.obj in/d.obj", "3")] {
+        let ran = folder.run(&format!("batch {meshes} -o {out} -n 5 --attributes color"));
+        ran.says(&["no regular file", "pipe.mtl", "it is no file", "4 of 4 meshes failed"]);
+        let rows = folder.summary(&format!("{out}/summary.csv"));
+        // The octahedra have no colour.
+        assert_eq!(column(&rows, "error_kind"), ["options", "read", "options", "format"]);
+    }
 }
 
 #[cfg(target_os = "linux")]
@@ -139,4 +163,8 @@ fn a_name_that_is_no_text_is_a_failure_of_its_own() {
     assert_eq!(column(&rows, "output"), ["a.ply", "", "c.ply"]);
     assert_eq!(folder.run("batch in -o out -n 5 --summary-only").code, 1);
     assert_eq!(column(&folder.summary("out/summary.csv"), "error_kind"), ["", "name", ""]);
+    for (place, pattern) in ["in/*.obj", "**/??.obj", "i*/[!c]?.obj", "in/b*"].into_iter().enumerate() {
+        let ran = folder.run(&format!("batch {pattern} -o out-{place} -n 5"));
+        assert!(ran.code == 1 && ran.stderr.contains("not UTF-8"), "{pattern}: {}", ran.stderr);
+    }
 }

@@ -8,7 +8,7 @@ use gltf::Document;
 use gltf::buffer::{Source, View};
 
 use crate::io::detect::MeshFormat;
-use crate::io::gltf::malformed;
+use crate::io::gltf::{DECOMPRESS, is_compression, malformed};
 use crate::io::read::{Place, ReadError, Resolver, brief};
 
 /// All buffers of a document, at least as long as it says.
@@ -24,9 +24,7 @@ impl Buffers {
         for buffer in document.buffers() {
             let place = Place::Item("buffer", buffer.index());
             let bytes = match buffer.source() {
-                Source::Bin => blob.take().ok_or_else(|| {
-                    malformed(place, "it has no address, and there is no binary chunk".into())
-                })?,
+                Source::Bin => blob.take().ok_or_else(|| without_address(document, place))?,
                 Source::Uri(uri) => match uri.strip_prefix("data:") {
                     Some(data) => {
                         embedded(data).ok_or_else(|| malformed(place, "its data is not base64".into()))?
@@ -60,6 +58,19 @@ impl Buffers {
     pub(super) fn view(&self, view: &View<'_>) -> Option<&[u8]> {
         let end = view.offset().checked_add(view.length())?;
         self.0.get(view.buffer().index())?.get(view.offset()..end)
+    }
+}
+
+/// Compressed files have such buffers, for what is unpacked.
+fn without_address(document: &Document, place: Place) -> ReadError {
+    match document.extensions_used().find(|extension| is_compression(extension)) {
+        Some(extension) => ReadError::Unsupported {
+            format: MeshFormat::Gltf,
+            place,
+            what: format!("a buffer compressed with {}", brief(extension)),
+            advice: DECOMPRESS,
+        },
+        None => malformed(place, "it has no address, and there is no binary chunk".into()),
     }
 }
 

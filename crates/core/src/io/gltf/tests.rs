@@ -184,8 +184,9 @@ fn bad_documents_are_named() {
     );
     assert!(replaced("5123", "1").starts_with("glTF, file: "));
     assert!(
-        replaced(r#""asset""#, r#""extensionsRequired": ["KHR_draco_mesh_compression"], "asset""#)
-            .contains("the required extension KHR_draco_mesh_compression cannot be read; export it without")
+        replaced(r#""asset""#, r#""extensionsRequired": ["KHR_draco_mesh_compression"], "asset""#).contains(
+            "the required extension KHR_draco_mesh_compression cannot be read; write it without compression"
+        )
     );
     assert!(
         replaced(ONE_NODE, r#""nodes": [{"children": [1]}, {"children": [0]}], "scenes": [{"nodes": [0]}]"#)

@@ -3,12 +3,13 @@
 
 use std::str::FromStr;
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3};
 
 use crate::attributes::{CornerValues, MeshAttributes, PolygonNames, from_srgb};
 use crate::io::detect::MeshFormat;
-use crate::io::obj::for_each_statement;
+use crate::io::obj::{for_each_statement, without_comment};
 use crate::io::read::{Model, Place, ReadError, brief};
+use crate::io::text::real;
 
 /// Reads the attributes of a file whose polygons were read; gives the names of its material libraries.
 pub(super) fn read(text: &str, model: &mut Model) -> Result<Vec<String>, ReadError> {
@@ -26,8 +27,13 @@ pub(super) fn read(text: &str, model: &mut Model) -> Result<Vec<String>, ReadErr
     }
     debug_assert_eq!(reader.corners, model.soup.corners.len());
     debug_assert_eq!(reader.polygons, model.soup.polygon_count());
-    let Reader { mut attributes, uv, color_of, libraries, .. } = reader;
+    let Reader { mut attributes, uv, colors, color_of, libraries, .. } = reader;
     attributes.uv = vec![uv];
+    let largest = if colors.iter().any(|color| color.max_element() >= BYTES_FROM) { 255.0 } else { 1.0 };
+    attributes.colors.extend(colors.into_iter().map(|color| {
+        let rgb = (color / largest).clamp(DVec3::ZERO, DVec3::ONE).to_array().map(from_srgb);
+        DVec3::from_array(rgb).extend(1.0)
+    }));
     for (corner, &vertex) in model.soup.corners.iter().enumerate() {
         if let Some(color) = color_of.get(vertex as usize).copied().flatten() {
             attributes.colors.set(corner, color);
@@ -37,11 +43,17 @@ pub(super) fn read(text: &str, model: &mut Model) -> Result<Vec<String>, ReadErr
     Ok(libraries)
 }
 
+/// If any number of a colour is this large, all are from 0 to 255, as MeshLab and others write them. Those from 0 to 1
+/// may be a little larger than 1 by rounding.
+const BYTES_FROM: f64 = 2.0;
+
 /// What was read so far.
 #[derive(Default)]
 struct Reader {
     attributes: MeshAttributes,
     uv: CornerValues<DVec2>,
+    /// sRGB, as they stand in the file.
+    colors: Vec<DVec3>,
     /// For each vertex the index of its colour.
     color_of: Vec<Option<usize>>,
     corners: usize,
@@ -56,13 +68,11 @@ impl Reader {
         let (keyword, rest) = keyword(statement);
         match keyword {
             "v" => {
-                let color = match numbers::<6>(rest) {
-                    Some([_, _, _, r, g, b]) => {
-                        let [r, g, b] = [r, g, b].map(|value: f64| from_srgb(value.clamp(0.0, 1.0)));
-                        Some(self.attributes.colors.extend([DVec4::new(r, g, b, 1.0)]))
-                    }
-                    None => None,
-                };
+                let color = numbers(rest).map(|[_, _, _, r, g, b]| DVec3::new(r, g, b));
+                let color = color.filter(|color| color.is_finite()).map(|color| {
+                    self.colors.push(color);
+                    self.colors.len() - 1
+                });
                 self.color_of.push(color);
             }
             "vn" => {
@@ -77,8 +87,8 @@ impl Reader {
                 self.uv.extend([uv.ok_or("`vt` must be followed by numbers")?]);
             }
             "f" | "fo" => self.face(rest)?,
-            "usemtl" => self.material = named(&mut self.attributes.material_of, rest),
-            "o" | "g" => self.part = named(&mut self.attributes.parts, rest),
+            "usemtl" => self.material = named(&mut self.attributes.material_of, without_comment(rest)),
+            "o" | "g" => self.part = named(&mut self.attributes.parts, without_comment(rest)),
             "mtllib" if !rest.trim().is_empty() => self.libraries.push(rest.trim().to_owned()),
             _ => {}
         }
@@ -120,12 +130,18 @@ fn named(names: &mut PolygonNames, name: &str) -> Option<usize> {
     (!name.is_empty()).then(|| names.index_of(name))
 }
 
-/// The first `N` numbers; `None` unless there are as many.
+/// The first `N` numbers, which may be infinite or none; `None` unless there are as many before a comment.
 fn numbers<const N: usize>(rest: &str) -> Option<[f64; N]> {
-    let mut words = rest.split('#').next()?.split_whitespace();
+    let mut words = rest.split_whitespace();
     let mut numbers = [0.0; N];
-    for number in &mut numbers {
-        *number = f64::from_str(words.next()?).ok().filter(|number| number.is_finite())?;
+    for (index, number) in numbers.iter_mut().enumerate() {
+        let word = words.next()?;
+        // `-1.#IND` is no comment; of `3#...` the rest is one.
+        *number = match (real(word), word.split_once('#')) {
+            (Some(number), _) => number,
+            (None, Some((number, _))) if index + 1 == N => real(number)?,
+            _ => return None,
+        };
     }
     Some(numbers)
 }

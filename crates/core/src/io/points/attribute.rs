@@ -7,7 +7,7 @@ use glam::DVec4;
 
 use crate::attributes::{MeshAttributes, Places, to_srgb8};
 use crate::io::points::PointFormat;
-use crate::io::points::field::{Field, FieldData, Precision};
+use crate::io::points::field::{Field, FieldData, Precision, unique};
 use crate::measure::cell_areas;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
@@ -47,7 +47,8 @@ pub enum Attribute {
     Origin,
     /// The area that the point stands for ([`cell_areas`]), in squared units of the mesh.
     CellArea,
-    /// A number that the file has at its corners, such as a property of PLY, under its name there.
+    /// A number that the file has at its corners, such as a property of PLY, under its name there; with `property_` before
+    /// it where something else that is wanted has this name, in whatever case.
     Number(String),
 }
 
@@ -184,11 +185,39 @@ pub fn gather(
         }
         fields.push(gathering.field(attribute, smooth));
     }
+    rename_numbers(&mut fields, wanted);
     let mut columns: Vec<&String> = fields.iter().flat_map(|field| &field.columns).collect();
     columns.sort_unstable();
     match columns.windows(2).find(|pair| pair[0] == pair[1]) {
         Some(pair) => Err(AttributeError::Twice(pair[0].clone())),
         None => Ok(fields),
+    }
+}
+
+/// Gives numbers of the file other names where those of something else are the same: in some formats the columns count,
+/// in others the keys, in capitals.
+fn rename_numbers(fields: &mut [Field], wanted: &[Attribute]) {
+    let is_number: Vec<bool> =
+        [false].into_iter().chain(wanted.iter().map(|one| matches!(one, Attribute::Number(_)))).collect();
+    let names = |field: &Field| -> Vec<String> {
+        field.columns.iter().chain([&field.key]).map(|name| name.to_ascii_lowercase()).collect()
+    };
+    let fixed = fields.iter().zip(&is_number).filter(|(_, number)| !**number);
+    let mut taken: Vec<String> = fixed.flat_map(|(field, _)| names(field)).collect();
+    let mut meeting = Vec::new();
+    for (field, _) in fields.iter_mut().zip(&is_number).filter(|(_, number)| **number) {
+        let name = field.key.to_ascii_lowercase();
+        if taken.contains(&name) {
+            meeting.push(field);
+        } else {
+            taken.push(name);
+        }
+    }
+    for field in meeting {
+        let name = unique(field.key.clone(), |name| taken.contains(&name.to_ascii_lowercase()));
+        taken.push(name.to_ascii_lowercase());
+        field.columns = vec![name.clone()];
+        field.key = name;
     }
 }
 

@@ -94,3 +94,11 @@ pub(super) fn colors(fields: &[Field]) -> Option<&[u8]> {
         _ => None,
     })
 }
+
+/// The name, with as many `property_` before it as it takes so that no other has it.
+pub(super) fn unique(mut name: String, is_taken: impl Fn(&str) -> bool) -> String {
+    while is_taken(&name) {
+        name.insert_str(0, "property_");
+    }
+    name
+}

@@ -12,7 +12,7 @@ use ply_rs_bw::ply::{
 use ply_rs_bw::writer::Writer;
 
 use crate::io::ply::first_line;
-use crate::io::points::field::origin_number;
+use crate::io::points::field::{origin_number, unique};
 use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError, Precision};
 
 pub(super) const BINARY: Encoding = Encoding::BinaryLittleEndian;
@@ -45,8 +45,10 @@ pub(super) fn write(fields: &[Field], encoding: Encoding, mut out: &mut dyn io::
             let name = match (&*field.key, &**name) {
                 ("uv", "u") => "s".to_owned(),
                 ("uv", "v") => "t".to_owned(),
-                _ => one_line(name).replace(' ', "_"),
+                _ => property_name(name),
             };
+            // Such as `s` beside texture coordinates.
+            let name = unique(name, |name| columns.contains_key(name));
             let property = PropertyDef::new(name.clone(), PropertyType::Scalar(scalar.clone()));
             vertex.properties.insert(name.clone(), property);
             columns.insert(name, (field, column));
@@ -66,9 +68,24 @@ pub(super) fn write(fields: &[Field], encoding: Encoding, mut out: &mut dyn io::
     Ok(())
 }
 
-/// A name that a header of ASCII lines can hold.
+/// A name that a comment of one line can hold, in UTF-8: readers pass over comments.
 fn one_line(name: &str) -> String {
-    name.chars().map(|c| if c.is_ascii_graphic() || c == ' ' { c } else { '?' }).collect()
+    name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+}
+
+/// A name that every reader takes for one of a property.
+fn property_name(name: &str) -> String {
+    name.chars()
+        .map(|c| {
+            if c.is_ascii_graphic() {
+                c
+            } else if c == ' ' {
+                '_'
+            } else {
+                '?'
+            }
+        })
+        .collect()
 }
 
 /// A point to be written; the library's trait asks for an empty one too.

@@ -145,7 +145,7 @@ fn fields_in_text() {
     );
     let ply = text(PointFormat::PlyAscii);
     for line in [
-        "comment material 0 a, \"b\"\ncomment material 1 caf?\n",
+        "comment material 0 a, \"b\"\ncomment material 1 caf\u{e9}\n",
         "property float s\nproperty float t\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n",
         "property int material\nproperty int face\nproperty uchar origin\nproperty double cell_area\nend_header\n",
         "\n1 2 3 0 0 1 0.25 0.75 255 0 188 255 1 7 0 0.1\n-4 0.5 60 1 0 0 NaN NaN 0 0 0 0 -1 16777215 2 0.0000001\n",
