@@ -112,8 +112,8 @@ fn planes_worth_few_points_get_their_share_to_within_one() {
 #[test]
 fn needles_are_cut_across() {
     for height in [1e-3, 1e-6, 1e-9, 1e-12] {
-        let mut soup = PolygonSoup::default();
-        soup.positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.3, height, 0.0)];
+        let positions = vec![DVec3::ZERO, DVec3::X, DVec3::new(0.3, height, 0.0)];
+        let mut soup = PolygonSoup { positions, ..PolygonSoup::default() };
         soup.push_polygon(&[0, 1, 2]);
         let needle = mesh(&soup);
         let result = equalized(&needle, &baseline::random(&needle, 300, 1), 5);

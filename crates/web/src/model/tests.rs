@@ -1,3 +1,5 @@
+//! What can happen to the page, one thing after another.
+
 use super::*;
 use crate::engine::Engine;
 use ldwrap::Silent;
