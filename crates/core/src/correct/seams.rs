@@ -155,9 +155,7 @@ impl Seams<'_> {
         let at = |v: u32| of_strip.vertices[v as usize] + self.domain.offsets[strip.index()];
         let near = [at(edge.from), at(edge.to)];
         let far = [at(from), at(to)];
-        let low = near[0].min(near[1]).min(far[0]).min(far[1]) - self.tolerance;
-        let high = near[0].max(near[1]).max(far[0]).max(far[1]) + self.tolerance;
-        self.points.in_box(low, high, |slot, place| {
+        self.points.along(near, self.tolerance, |slot, place| {
             let distance = plane::segment_distance(near[0], near[1], place);
             let twin_distance = plane::segment_distance(far[0], far[1], place);
             if distance + twin_distance > self.tolerance {

@@ -1,4 +1,4 @@
-//! A triangle cut into horizontal bands.
+//! A convex polygon cut into horizontal bands.
 
 use glam::DVec2;
 
@@ -11,26 +11,30 @@ struct Side {
     slope: f64,
 }
 
-/// The sides of a triangle, ready to be cut.
+/// The sides of a convex polygon, ready to be cut.
 #[derive(Clone, Copy)]
-pub(super) struct Bands {
-    sides: [Side; 3],
+pub(super) struct Bands<const N: usize> {
+    sides: [Side; N],
     /// The corners of the box around it.
     pub(super) low: DVec2,
     pub(super) high: DVec2,
 }
 
-impl Bands {
+impl<const N: usize> Bands<N> {
     #[inline]
-    pub(super) fn new([a, b, c]: [DVec2; 3]) -> Self {
+    pub(super) fn new(corners: [DVec2; N]) -> Self {
         let side = |p: DVec2, q: DVec2| {
             let (low, high) = if p.y <= q.y { (p, q) } else { (q, p) };
             Side { low, high, slope: (high.x - low.x) / (high.y - low.y) }
         };
-        Self { sides: [side(a, b), side(b, c), side(c, a)], low: a.min(b).min(c), high: a.max(b).max(c) }
+        Self {
+            sides: std::array::from_fn(|i| side(corners[i], corners[(i + 1) % N])),
+            low: corners.into_iter().fold(DVec2::INFINITY, DVec2::min),
+            high: corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max),
+        }
     }
 
-    /// The leftmost and the rightmost x of the triangle between two heights, to rounding; `None` if it is not there.
+    /// The leftmost and the rightmost x of the polygon between two heights, to rounding; `None` if it is not there.
     #[inline]
     pub(super) fn between(&self, bottom: f64, top: f64) -> Option<(f64, f64)> {
         let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);

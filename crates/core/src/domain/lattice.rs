@@ -67,9 +67,9 @@ impl Lattice {
         row(low - margin)..=row(high + margin).min(last)
     }
 
-    /// The points that may lie in the triangle: those of its rows, cut to it.
+    /// The points that may lie in the convex polygon, each once: those of its rows, cut to it.
     #[inline]
-    pub(super) fn in_triangle(&self, corners: [DVec2; 3], visit: &mut impl FnMut(u64, DVec2)) {
+    pub(super) fn in_polygon<const N: usize>(&self, corners: [DVec2; N], visit: &mut impl FnMut(u64, DVec2)) {
         let bands = Bands::new(corners);
         let height = self.side / exact(self.rows);
         // Rounding is far below these margins.
@@ -79,13 +79,6 @@ impl Lattice {
             if let Some((left, right)) = bands.between(bottom, bottom + height + 2.0 * margin) {
                 self.in_row(row, left, right, visit);
             }
-        }
-    }
-
-    /// The points that may lie in the box.
-    pub(super) fn in_box(&self, low: DVec2, high: DVec2, visit: &mut impl FnMut(u64, DVec2)) {
-        for row in self.rows(low.y, high.y) {
-            self.in_row(row, low.x, high.x, visit);
         }
     }
 

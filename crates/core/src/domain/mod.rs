@@ -153,20 +153,28 @@ impl DomainPoints {
         }
     }
 
-    /// Calls `visit` with the slot and the place of each point in the box, each once, and of some beside it.
-    pub(crate) fn in_box(&self, low: DVec2, high: DVec2, mut visit: impl FnMut(u64, DVec2)) {
+    /// Calls `visit` with the slot and the place of each point at most `reach` from the segment, each once, and of some
+    /// farther away.
+    pub(crate) fn along(&self, [from, to]: [DVec2; 2], reach: f64, mut visit: impl FnMut(u64, DVec2)) {
         match &self.points {
-            Points::Listed(listed) => listed.in_box(low, high, &mut visit),
-            Points::Lattice(lattice) => lattice.in_box(low, high, &mut visit),
+            Points::Listed(listed) => {
+                listed.in_box(from.min(to) - reach, from.max(to) + reach, &mut visit);
+            }
+            Points::Lattice(lattice) => {
+                let onward = (to - from).try_normalize().unwrap_or(DVec2::X) * reach;
+                let aside = onward.perp();
+                let (from, to) = (from - onward, to + onward);
+                lattice.in_polygon([from - aside, to - aside, to + aside, from + aside], &mut visit);
+            }
         }
     }
 
-    /// As [`in_box`](Self::in_box), in the triangle.
+    /// As [`along`](Self::along), in the triangle.
     #[inline]
     pub(crate) fn in_triangle(&self, corners: [DVec2; 3], mut visit: impl FnMut(u64, DVec2)) {
         match &self.points {
             Points::Listed(listed) => listed.in_triangle(corners, &mut visit),
-            Points::Lattice(lattice) => lattice.in_triangle(corners, &mut visit),
+            Points::Lattice(lattice) => lattice.in_polygon(corners, &mut visit),
         }
     }
 }

@@ -1,3 +1,5 @@
+//! Regions of equal mass, by hand and by invariants.
+
 use super::*;
 use crate::domain::{DomainPoints, PlanarDomain};
 use crate::planted;
