@@ -58,7 +58,7 @@ pub(crate) fn components(count: u32) -> Case {
 }
 
 /// A tetrahedron that is so many times as long as wide, in a direction that is no axis.
-fn needle(aspect: f64) -> PolygonSoup {
+fn long(aspect: f64) -> PolygonSoup {
     let along = dvec3(0.6, 0.48, 0.64) * aspect;
     let positions = [DVec3::ZERO, DVec3::X, DVec3::Y, along].map(|p| p.to_array());
     soup(&positions, &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]])
@@ -225,7 +225,9 @@ pub(crate) fn cases() -> Vec<Case> {
     }
     cases.push(case("a cube 1e17 from the origin", moved(|p| p + 1e17), Expected::Error("has an area")));
     for aspect in [1e3, 1e6, 1e9, 1e12] {
-        cases.push(case(&format!("a tetrahedron {aspect:e} times as long as wide"), needle(aspect), POINTS));
+        let needle = soup(&[[0.0; 3], [1.0, 0.0, 0.0], [0.3, 1.0 / aspect, 0.0]], &[&[0, 1, 2]]);
+        cases.push(case(&format!("one triangle {aspect:e} times as long as wide"), needle, POINTS));
+        cases.push(case(&format!("a tetrahedron {aspect:e} times as long as wide"), long(aspect), POINTS));
         // The domain is a square of the length of the longest part.
         let expected = if aspect < 1e12 { POINTS } else { Expected::Error("too many") };
         let what = format!("200 triangles side by side, {aspect:e} times as long as wide");

@@ -3,13 +3,14 @@
 
 use glam::DVec2;
 
+use crate::baseline::HilbertOrder;
 use crate::correct::{Corrected, Correction, Mended};
 use crate::density::Density;
 use crate::domain::{DomainPoints, PlanarDomain, TooManyCells};
 use crate::irregularity;
 use crate::mesh::SurfaceMesh;
 use crate::pipeline::OptionsError;
-use crate::sample::{Origin, Sample};
+use crate::sample::{Origin, Sample, SurfacePoint};
 use crate::selection::Choice;
 use crate::sequence::{self, Sequence};
 use crate::shares::Regions;
@@ -61,7 +62,13 @@ const SURPLUS: f64 = 2.0;
 const ENOUGH: f64 = 1.1;
 
 /// With weights so many points of the domain, at most, are looked at to fill the densest places.
-const MOST_FOR_WEIGHTS: f64 = 4_194_304.0;
+const MOST_FOR_WEIGHTS: f64 = 1_048_576.0;
+
+/// With weights at most so many points are scattered on all of the surface for each one wanted before another way is taken.
+const MOST_FOR_ONE: f64 = 32.0;
+
+/// So many may be scattered in any case.
+const ALWAYS: f64 = 262_144.0;
 
 impl Scattering<'_> {
     pub(crate) fn meet(&self, request: Request) -> Result<Scattered, OptionsError> {
@@ -160,23 +167,49 @@ impl Scattering<'_> {
         self.domain_count(wanted * self.peak(wanted))
     }
 
-    /// At least `n` points: [`ENOUGH`] times as many, or more where those do not catch enough.
-    fn at_least(&self, n: usize, d_m: f64) -> Result<Vec<Corrected>, OptionsError> {
+    /// At least `n` points: [`ENOUGH`] times as many, or more where those do not catch enough; `None` if that would be far
+    /// too many.
+    fn at_least(&self, n: usize, d_m: f64) -> Result<Option<Vec<Corrected>>, OptionsError> {
         let mut count = self.count_for(n, ENOUGH);
         loop {
             let (mut caught, _) = self.scatter(count, d_m, |mended| mended.in_order(self.mesh))?;
             caught.retain(|c| self.density.at(&c.sample.point) > 0.0);
             if caught.len() >= n {
-                return Ok(caught);
+                return Ok(Some(caught));
             }
             count = count.saturating_mul(2);
+            if self.is_too_many(count, n) {
+                return Ok(None);
+            }
         }
+    }
+
+    /// Whether weights leave so little of the surface that points scattered on all of it are no way to fill it.
+    fn is_too_many(&self, count: u64, n: usize) -> bool {
+        let everywhere = count as f64 / self.domain.room(self.mesh.area());
+        !self.density.is_uniform() && everywhere > (MOST_FOR_ONE * n as f64).max(ALWAYS)
+    }
+
+    /// Exactly `n` points in Hilbert order by mass, each at its place in its strip: for weights that leave almost nothing of
+    /// the surface.
+    fn along_curve(&self, n: usize, d_m: f64) -> Scattered {
+        let points =
+            HilbertOrder::by_mass(self.mesh, &self.density.face_masses(self.mesh)).points(n, 0.5, 0.0);
+        let sample = |point: SurfacePoint| {
+            let [a, b, c] = self.domain.triangle(self.strips, point.face);
+            let [u, v, w] = point.barycentric;
+            let strip = self.strips.places[point.face.index()].strip;
+            Sample { point, strip, place: a * u + b * v + c * w, origin: Origin::Wrapped }
+        };
+        let correction = Correction { projected: 0, removed: 0 };
+        Scattered { samples: points.into_iter().map(sample).collect(), correction, d_m }
     }
 
     /// Exactly `n` points, thinned out evenly along the sequence.
     fn any(&self, n: usize) -> Result<Scattered, OptionsError> {
         let d_m = libm::sqrt(self.mesh.area() / n as f64);
-        Ok(scattered(thin_out(self.at_least(n, d_m)?, n), d_m))
+        let caught = self.at_least(n, d_m)?;
+        Ok(caught.map_or_else(|| self.along_curve(n, d_m), |caught| scattered(thin_out(caught, n), d_m)))
     }
 
     /// Exactly `n` points, the most central in each of as many regions of equal mass.
@@ -190,6 +223,9 @@ impl Scattering<'_> {
                 return Ok(Scattered { samples, correction, d_m });
             }
             count = count.saturating_mul(2);
+            if self.is_too_many(count, n) {
+                return Ok(self.along_curve(n, d_m));
+            }
         }
     }
 

@@ -107,6 +107,23 @@ fn extreme_weights_still_give_the_count() {
 }
 
 #[test]
+fn weights_on_one_small_face_are_met() {
+    let mesh = mesh(&shapes::uv_sphere(80, 80));
+    let chosen = 6_000;
+    let mut weights = vec![0.0; mesh.face_count()];
+    weights[chosen] = 1.0;
+    let density = Density::of_faces(&mesh, &weights).unwrap();
+    for n in [1, 500] {
+        let found = samples(&mesh, &density, &of_count(n, Selection::Regions));
+        assert_eq!(found.len(), n);
+        assert!(found.iter().all(|s| s.point.face.index() == chosen));
+        // The share of the face's part nearer to its first corner.
+        let near = found.iter().filter(|s| s.point.barycentric[0] > 0.5).count();
+        assert!((near as f64 - n as f64 / 4.0).abs() <= 1.0, "{near} of {n}");
+    }
+}
+
+#[test]
 fn more_extensible_points_contain_fewer() {
     for shape in [Shape::Torus, Shape::Cup, Shape::Cube] {
         let mesh = mesh(&shape.generate());

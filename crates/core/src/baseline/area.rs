@@ -15,11 +15,16 @@ pub(crate) struct AreaRow {
 impl AreaRow {
     /// Lays the faces in this order. The order must name every face once.
     pub(crate) fn new(mesh: &SurfaceMesh, faces: Vec<FaceId>) -> Self {
+        Self::by_mass(mesh.face_areas(), faces)
+    }
+
+    /// The same, each face as long as its mass.
+    pub(crate) fn by_mass(masses: &[f64], faces: Vec<FaceId>) -> Self {
         let mut sum = 0.0;
         let ends = faces
             .iter()
             .map(|&face| {
-                sum += mesh.face_area(face);
+                sum += masses[face.index()];
                 sum
             })
             .collect();

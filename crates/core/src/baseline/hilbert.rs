@@ -33,6 +33,11 @@ pub(crate) struct HilbertOrder(AreaRow);
 impl HilbertOrder {
     /// Puts the faces in order.
     pub(crate) fn new(mesh: &SurfaceMesh) -> Self {
+        Self::by_mass(mesh, mesh.face_areas())
+    }
+
+    /// The same for points by mass instead of area.
+    pub(crate) fn by_mass(mesh: &SurfaceMesh, masses: &[f64]) -> Self {
         let (low, high) = mesh.bounds();
         let extent = (high - low).max_element();
         let scale = if extent > 0.0 { ((1u64 << BITS) - 1) as f64 / extent } else { 0.0 };
@@ -44,7 +49,7 @@ impl HilbertOrder {
             (key((middle - low) * scale), face)
         });
         keyed.sort_unstable();
-        Self(AreaRow::new(mesh, keyed.into_iter().map(|(_, face)| face).collect()))
+        Self(AreaRow::by_mass(masses, keyed.into_iter().map(|(_, face)| face).collect()))
     }
 
     /// `count` points at the shares (i + `along`) / count of the area, the other coordinate shifted by `across`;

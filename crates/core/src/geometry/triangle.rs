@@ -92,7 +92,9 @@ fn nearest_inside(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> [f64; 3] {
     if d3 >= 0.0 && d4 <= d3 {
         return [0.0, 1.0, 0.0];
     }
-    let vc = d1 * d4 - d3 * d2;
+    // The parts of the area by cross products: by products of the numbers above (Ericson) they lose twice as many digits.
+    let normal = ab.cross(ac);
+    let vc = normal.dot(ab.cross(ap));
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
         let t = d1 / (d1 - d3);
         return [1.0 - t, t, 0.0];
@@ -103,12 +105,12 @@ fn nearest_inside(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> [f64; 3] {
     if d6 >= 0.0 && d5 <= d6 {
         return [0.0, 0.0, 1.0];
     }
-    let vb = d5 * d2 - d1 * d6;
+    let vb = normal.dot(ap.cross(ac));
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
         let t = d2 / (d2 - d6);
         return [1.0 - t, 0.0, t];
     }
-    let va = d3 * d6 - d5 * d4;
+    let va = normal.dot((c - b).cross(bp));
     if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
         let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
         return [0.0, 1.0 - t, t];
