@@ -89,7 +89,7 @@ pub(super) struct Block {
     pub(super) patch: u32,
     /// How many points are due here: one, or more where it is a single clump.
     pub(super) points: u32,
-    /// The distance of the points here: square root of the area for each, or more where they stand in a row.
+    /// The distance of the points here: square root of the area for each.
     pub(super) distance: f64,
 }
 
@@ -187,10 +187,6 @@ pub(super) fn lay_out(tiles: &Tiles, counts: &[usize], points: Vec<Item>) -> (La
     (layout, dues)
 }
 
-/// Points of a block stand no closer than this part of half the diagonal of its bounds; only in blocks much longer
-/// than wide that is more than the square root of the area.
-const ROW: f64 = 0.65;
-
 /// The mean place of a tile.
 fn centre(places: &[Place], tile: &Tile) -> Place {
     let [a, b, c] = tile.corners.map(|id| places[id as usize]);
@@ -251,21 +247,15 @@ fn block(
         // Every corner is in the list.
         tile.corners = tile.corners.map(|id| (first_place + ids.partition_point(|&i| i < id)) as u32);
     }
-    let mut distance = libm::sqrt(area / f64::from(points));
+    let distance = libm::sqrt(area / f64::from(points));
     let mean = Place { position: moment.position / mass, normal: moment.normal / mass };
     let aside = |place: &Place| place.position.distance_squared(mean.position);
     let nearest = centres.into_iter().min_by(|a, b| aside(a).total_cmp(&aside(b)));
-    let apart = nearest.filter(|place| aside(place) > distance * distance);
-    let bounds = Bounds::between(low, high);
-    // On a needle or a thin tube points stand in a row.
-    if apart.is_none() {
-        distance = distance.max(ROW * bounds.half.position.length() / f64::from(points));
-    }
     let block = Block {
         tiles: first_tile..first_tile + tiles.len(),
         places: first_place..layout.places.len(),
-        bounds,
-        centre: apart.unwrap_or(mean),
+        bounds: Bounds::between(low, high),
+        centre: nearest.filter(|place| aside(place) > distance * distance).unwrap_or(mean),
         patch: tiles[0].patch,
         points,
         distance,

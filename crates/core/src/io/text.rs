@@ -11,6 +11,7 @@ pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
 
 /// A real number as programs write it, also one that is not finite, for which C libraries have words of their own:
 /// `nan`, `-inf`, `nan(ind)`, `-1.#IND`, `1.#INF`.
+#[cfg(any(feature = "ply", feature = "obj"))]
 pub(super) fn real(word: &str) -> Option<f64> {
     if let Ok(number) = word.parse() {
         return Some(number);
