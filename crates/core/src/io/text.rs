@@ -32,7 +32,7 @@ pub(super) fn real(word: &str) -> Option<f64> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, any(feature = "ply", feature = "obj")))]
 mod tests {
     use super::*;
 
