@@ -31,8 +31,7 @@ const SMALL: usize = 20_000;
 /// Tries the candidates and puts together what is best for each component.
 pub(super) fn least_open(mesh: &SurfaceMesh, options: &SegmentOptions, tolerance: f64) -> Segmentation {
     let components = mesh.topology().components();
-    let shapes = Shapes::new(mesh);
-    let seeds = component_seeds(mesh);
+    let (shapes, seeds) = parallel::join(|| Shapes::new(mesh), || component_seeds(mesh));
     let count = if mesh.face_count() > SMALL { 2 } else { CANDIDATES.len() };
     let tried = parallel::map(count, |k| match CANDIDATES[k] {
         Candidate::Fit(tie) => {
@@ -47,7 +46,7 @@ pub(super) fn least_open(mesh: &SurfaceMesh, options: &SegmentOptions, tolerance
         Candidate::Grow(next) => {
             let segmentation = grow(mesh, options, next);
             let planar = Planar::of(mesh, &shapes, &segmentation);
-            let open = planar.open_lengths(mesh, &segmentation, components, tolerance);
+            let open = planar.open_lengths(&shapes, &segmentation, components, tolerance);
             (segmentation.segments, open)
         }
     });
