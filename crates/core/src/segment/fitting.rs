@@ -54,8 +54,19 @@ impl State {
 
 /// A segment, and the length of its cuts that are open: each edge counts once.
 pub(super) struct Fitted {
-    pub(super) segment: Segment,
+    /// For each face the side across which it joined; of the first face, its first side.
+    pub(super) sides: Vec<HalfedgeId>,
     pub(super) open: f64,
+}
+
+impl Fitted {
+    pub(super) fn segment(&self) -> Segment {
+        let attachment = |(i, &side): (usize, &HalfedgeId)| Attachment {
+            face: side.face(),
+            across: (i > 0).then_some(side),
+        };
+        Segment { attachments: self.sides.iter().enumerate().map(attachment).collect() }
+    }
 }
 
 struct Fitting<'a> {
@@ -103,10 +114,8 @@ struct Fit {
 impl Fitting<'_> {
     /// Grows a segment from a face until nothing is left beside it.
     fn grow(&mut self, mesh: &SurfaceMesh, seed: FaceId) -> Fitted {
-        let mut fitted = Fitted { segment: Segment::default(), open: 0.0 };
-        let attachments = &mut fitted.segment.attachments;
+        let mut fitted = Fitted { sides: vec![HalfedgeId::of(seed, 0)], open: 0.0 };
         self.planar.lay(seed, planar::first(mesh, seed));
-        attachments.push(Attachment { face: seed, across: None });
         self.join(seed, 0..3);
         while let Some((cost, across)) = self.frontier.pop() {
             let face = across.face();
@@ -130,7 +139,7 @@ impl Fitting<'_> {
                 }
                 fitted.open += fit.open;
             }
-            attachments.push(Attachment { face, across: Some(across) });
+            fitted.sides.push(across);
             self.join(face, other_corners(across.corner()));
         }
         fitted

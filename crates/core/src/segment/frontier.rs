@@ -116,3 +116,34 @@ impl Frontier {
         self.opening.pop().map(|item| (Cost((item >> 32) as u64), HalfedgeId(item as u32)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::cmp::Reverse;
+    use std::collections::BinaryHeap;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// As one heap of costs and sides, with sides put in between that are cheaper than what was taken out before.
+        #[test]
+        fn the_cheapest_comes_first(steps in prop::collection::vec((0..4u8, 0..3u8, 0..5u8), 0..400)) {
+            let (mut frontier, mut expected) = (Frontier::default(), BinaryHeap::new());
+            for (side, (take, share, tie)) in (0..).zip(steps) {
+                // Sides fall, so that equal costs do not come in their order.
+                let (cost, side) = (Cost::new(f64::from(share) / 2.0, f64::from(tie)), HalfedgeId(u32::MAX - side));
+                frontier.push(cost, side);
+                expected.push(Reverse((cost, side)));
+                for _ in 0..take / 2 {
+                    prop_assert_eq!(frontier.pop(), expected.pop().map(|Reverse(first)| first));
+                }
+            }
+            while let Some(Reverse(first)) = expected.pop() {
+                prop_assert_eq!(frontier.pop(), Some(first));
+            }
+            prop_assert_eq!(frontier.pop(), None);
+        }
+    }
+}
