@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::laplacian::{Laplacian, Link, solve};
+use super::laplacian::{Laplacian, Link, Solved, solve};
 use super::near::Site;
 use super::owners::Diagram;
 
@@ -15,8 +15,8 @@ pub(super) enum Reach {
     /// From some cells away, as long as sites move: to get it from farther away weights would have to slope so that
     /// cells slip off their sites, and every round of moves would have to catch up with that.
     Near,
-    /// From wherever it is, at the end.
-    Far,
+    /// From far away, at the end; the farther, the more rounds have gone that way.
+    Far { round: u32 },
 }
 
 impl Reach {
@@ -24,7 +24,7 @@ impl Reach {
     fn accuracy(self) -> f64 {
         match self {
             Self::Near => 0.1,
-            Self::Far => 0.03,
+            Self::Far { .. } => 0.03,
         }
     }
 
@@ -33,7 +33,7 @@ impl Reach {
     fn screen(self) -> f64 {
         match self {
             Self::Near => 0.03,
-            Self::Far => 3e-4,
+            Self::Far { round } => 3e-4 * libm::exp2(-3.0 * f64::from(round)),
         }
     }
 }
@@ -49,7 +49,7 @@ pub(super) fn weight_steps(
     moves: &[DVec3],
     wanted: &[f64],
     reach: Reach,
-) -> Vec<f64> {
+) -> Vec<Solved> {
     let mut missing: Vec<f64> = wanted.iter().zip(&diagram.cells).map(|(w, c)| w - c.mass).collect();
     for border in &diagram.borders {
         let (a, b) = (border.a as usize, border.b as usize);

@@ -90,6 +90,13 @@ impl Laplacian {
         self.diagonal[row] * vector[row] - beside.sum::<f64>()
     }
 
+    /// The mean of a vector over the rows beside a row.
+    fn beside(&self, row: usize, vector: &[f64]) -> f64 {
+        let sum: f64 =
+            self.row(row).iter().map(|&(column, flow)| f64::from(flow) * vector[column as usize]).sum();
+        divided(sum, self.diagonal[row] - self.screen[row])
+    }
+
     /// Which row of the next coarser matrix each row belongs to, and how many of those there are.
     fn aggregates(&self) -> (Vec<u32>, usize) {
         const NONE: u32 = u32::MAX;
@@ -143,12 +150,20 @@ struct Unknown {
     image: f64,
 }
 
+/// What was found for a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solved {
+    pub(super) value: f64,
+    /// The mean value of the rows that it is linked to.
+    pub(super) beside: f64,
+}
+
 /// How many rows are worked on together.
 const CHUNK: usize = 1 << 12;
 
 /// Solves with a residual of at most `accuracy` of what it is at first, in the norm of the preconditioner. From each part of the rows
 /// that no link joins to another part the mean of `right` is taken: its sum cannot be met. Linear in rows and links.
-pub(super) fn solve(matrix: Laplacian, mut right: Vec<f64>, accuracy: f64) -> Vec<f64> {
+pub(super) fn solve(matrix: Laplacian, mut right: Vec<f64>, accuracy: f64) -> Vec<Solved> {
     const MOST_ITERATIONS: usize = 60;
     let mut cycle = Cycle::new(matrix);
     cycle.level_parts(&mut right);
@@ -184,7 +199,10 @@ pub(super) fn solve(matrix: Laplacian, mut right: Vec<f64>, accuracy: f64) -> Ve
             0.0
         });
     }
-    state.into_iter().map(|unknown| unknown.value).collect()
+    let values: Vec<f64> = state.into_iter().map(|unknown| unknown.value).collect();
+    let matrix = &cycle.levels[0].matrix;
+    let solved = |row| Solved { value: values[row], beside: matrix.beside(row, &values) };
+    parallel::map(values.len(), solved)
 }
 
 /// Changes every row and adds up what that gives, chunk by chunk.

@@ -15,7 +15,8 @@ use crate::progress::Progress;
 /// How far a point is moved beyond its cell's centroid; speeds up the approach to equal, round cells.
 const OVERSHOOT: f64 = 1.7;
 
-/// The largest change of a weight in one round, in squared distances of the points; keeps cells from vanishing.
+/// By how much the change of a weight in one round may differ from those beside it, in squared distances of the points;
+/// keeps cells from vanishing. Long waves may be higher.
 const MOST_STEP: f64 = 1.0;
 
 /// At most this many rounds at the end in which only weights change.
@@ -61,14 +62,15 @@ pub(super) fn relax(
             r if r == rounds => 1.0,
             _ => 0.0,
         };
-        let reach = if round + 1 < rounds { Reach::Near } else { Reach::Far };
+        let reach =
+            if round + 1 < rounds { Reach::Near } else { Reach::Far { round: round.saturating_sub(rounds) } };
         let moves: Vec<DVec3> =
             sites.iter().zip(&diagram.cells).map(|(s, c)| to_centroid(s, c) * step).collect();
         let steps = weight_steps(&diagram, &sites, &moves, wanted, reach);
         for (((site, cell), by), step) in sites.iter_mut().zip(&diagram.cells).zip(&moves).zip(&steps) {
             let most = MOST_STEP * site.distance * site.distance;
             site.place.position += *by;
-            site.weight += step.clamp(-most, most);
+            site.weight += step.beside + (step.value - step.beside).clamp(-most, most);
             if round < rounds && cell.mass > 0.0 {
                 site.place.normal = cell.moment.normal / cell.mass;
             }

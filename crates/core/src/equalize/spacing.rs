@@ -11,12 +11,11 @@ use super::relax::Relaxed;
 use super::sides::Sides;
 use crate::parallel;
 
-/// The distance that points keep, in distances of the points: a little more than half of the hexagonal ideal, which is
-/// sqrt(2 / sqrt(3)) = 1.0746.
+/// The distance that points keep, in distances of the points: a little more than half of the hexagonal ideal.
 const KEPT: f64 = 0.57;
 
-/// From how many places of its cell a point chooses.
-const CHOICES: u32 = 48;
+/// Half of the hexagonal ideal: sqrt(2 / sqrt(3)) / 2.
+const HALF: f64 = 0.537_284_965_911_770_9;
 
 /// Points farther away than this many distances of the points do not come too close.
 const SIGHT: f64 = 2.5;
@@ -24,30 +23,61 @@ const SIGHT: f64 = 2.5;
 /// At most so many times each point chooses.
 const SWEEPS: usize = 12;
 
-/// Of a shortage of distance, squared, so much counts against a way from the centroid, squared.
-const WEIGHT: f64 = 30.0;
+/// What is tried until no point stands too close to another.
+struct Attempt {
+    /// Points closer than this, in distances of the points, start it.
+    least: f64,
+    /// From how many places of its cell a point chooses.
+    choices: u32,
+    /// Of a shortage of distance, squared, so much counts against a way from the centroid, squared.
+    weight: f64,
+}
+
+const ATTEMPTS: [Attempt; 3] = [
+    Attempt { least: KEPT, choices: 48, weight: 30.0 },
+    Attempt { least: HALF, choices: 128, weight: 100.0 },
+    Attempt { least: HALF, choices: 256, weight: 300.0 },
+];
 
 /// Moves the points of `own`, one for each site, that stand closer than half of the hexagonal ideal to another. Each
 /// stays on its side.
 pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>, own: &mut [Option<Spot>]) {
+    for (seed, attempt) in (0..).zip(&ATTEMPTS) {
+        if !move_aside(layout, relaxed, sides, own, attempt, seed) {
+            break;
+        }
+    }
+}
+
+/// Whether any point stood too close.
+fn move_aside(
+    layout: &Layout,
+    relaxed: &Relaxed,
+    sides: Option<&Sides>,
+    own: &mut [Option<Spot>],
+    attempt: &Attempt,
+    seed: u64,
+) -> bool {
     let mut at: Vec<DVec3> =
         relaxed.sites.iter().zip(&*own).map(|(s, o)| o.map_or(s.place.position, |o| o.place)).collect();
-    let kept = |i: usize, j: usize| KEPT * relaxed.sites[i].distance.min(relaxed.sites[j].distance);
+    let between = |i: usize, j: usize| (relaxed.sites[i].distance + relaxed.sites[j].distance) * 0.5;
     let runs = Runs::new(&at);
     let within = |i: usize, sight: f64| {
         let mut near = Vec::new();
         runs.within(at[i], sight * relaxed.sites[i].distance, |j| j != i, &mut near);
         near
     };
-    let is_crowded =
-        |i: usize| within(i, KEPT).iter().any(|&j| at[i].distance(at[j as usize]) < kept(i, j as usize));
+    let is_crowded = |i: usize| {
+        let too_close = |&j: &u32| at[i].distance(at[j as usize]) < attempt.least * between(i, j as usize);
+        within(i, attempt.least).iter().any(too_close)
+    };
     let crowded: Vec<usize> = (0..)
         .zip(parallel::map(at.len(), is_crowded))
         .filter(|(_, crowded)| *crowded)
         .map(|(i, _)| i)
         .collect();
     if crowded.is_empty() {
-        return;
+        return false;
     }
     let mut wants = vec![false; at.len()];
     for &i in &crowded {
@@ -58,14 +88,14 @@ pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>
     }
     let seen: Vec<Vec<u32>> =
         parallel::map(at.len(), |i| if wants[i] { within(i, SIGHT) } else { Vec::new() });
-    let spots = spots(layout, relaxed, |i| wants[i], CHOICES, 0);
+    let spots = spots(layout, relaxed, |i| wants[i], attempt.choices, seed);
     for _ in 0..SWEEPS {
         let mut changed = false;
         for i in (0..at.len()).filter(|&i| wants[i]) {
             let Some(now) = own[i] else { continue };
             let short = |place: DVec3| {
                 let shortage = |&j: &u32| {
-                    let short = (kept(i, j as usize) - place.distance(at[j as usize])).max(0.0);
+                    let short = (KEPT * between(i, j as usize) - place.distance(at[j as usize])).max(0.0);
                     short * short
                 };
                 seen[i].iter().map(shortage).sum::<f64>()
@@ -75,7 +105,8 @@ pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>
             }
             let cell = &relaxed.cells[i];
             let centroid = cell.moment.position / cell.mass;
-            let cost = |spot: &Spot| WEIGHT * short(spot.place) + spot.place.distance_squared(centroid);
+            let cost =
+                |spot: &Spot| attempt.weight * short(spot.place) + spot.place.distance_squared(centroid);
             let mut best = (cost(&now), now);
             let stays = |spot: &&Spot| sides.is_none_or(|sides| sides.of(spot.face) == sides.of(now.face));
             for spot in spots[i].iter().filter(stays) {
@@ -92,4 +123,5 @@ pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>
             break;
         }
     }
+    true
 }
