@@ -42,10 +42,13 @@ pub(super) fn cell<T>(
     for (j, (other, _)) in sites.iter().enumerate() {
         // How much nearer this site is than the other, affine over the tile.
         let lead = [other[0] - own[0], other[1] - own[1], other[2] - own[2]];
-        if j == k || lead.iter().all(|&l| l > 0.0) {
+        if j == k || (lead[0] > 0.0 && lead[1] > 0.0 && lead[2] > 0.0) {
             continue;
         }
         let at = |p: &Corner| lead[0] + p.u * (lead[1] - lead[0]) + p.v * (lead[2] - lead[0]);
+        if polygon.iter().all(|p| at(p) > 0.0) {
+            continue;
+        }
         clip(polygon, at, j, spare);
         std::mem::swap(polygon, spare);
         if polygon.len() < 3 {

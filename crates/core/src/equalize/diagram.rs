@@ -8,13 +8,10 @@
 //! a whole, and most of the others are cut by one line.
 
 use super::clip::{self, Powers};
-use super::layout::{Bounds, Layout, Place};
+use super::layout::{Block, Bounds, Layout, Place};
 use super::near::{Near, Site};
 use super::tiles::Tile;
 use crate::parallel;
-
-/// How many blocks are worked on together; fixed, so that sums come out the same with any number of threads.
-const CHUNK: usize = 32;
 
 /// Goes through all blocks and gives back what was heard, chunk by chunk.
 pub(super) fn walk<O: Owners + Send>(
@@ -23,11 +20,35 @@ pub(super) fn walk<O: Owners + Send>(
     sites: &[Site],
     new: impl Fn() -> O + Sync + Send,
 ) -> Vec<O> {
+    go_through(layout, near, sites, layout.blocks.len(), |block| block, new)
+}
+
+/// As [`walk`], through some of the blocks.
+pub(super) fn walk_some<O: Owners + Send>(
+    layout: &Layout,
+    near: &Near,
+    sites: &[Site],
+    blocks: &[u32],
+    new: impl Fn() -> O + Sync + Send,
+) -> Vec<O> {
+    go_through(layout, near, sites, blocks.len(), |i| blocks[i] as usize, new)
+}
+
+fn go_through<O: Owners + Send>(
+    layout: &Layout,
+    near: &Near,
+    sites: &[Site],
+    count: usize,
+    block: impl Fn(usize) -> usize + Sync + Send,
+    new: impl Fn() -> O + Sync + Send,
+) -> Vec<O> {
     let powers: Vec<Power> = parallel::map(sites.len(), |i| Power::new(i as u32, &sites[i]));
-    parallel::map_chunks(layout.blocks.len(), CHUNK, |range| {
+    // Enough pieces for many cores, and not so small that starting them shows.
+    let chunk = (count / 64).clamp(8, 128);
+    parallel::map_chunks(count, chunk, |range| {
         let mut walk = Walk::new(layout, &powers);
         let mut owners = new();
-        for block in range {
+        for block in range.map(&block) {
             walk.block(block, near.of_block(block), &mut owners);
         }
         owners
@@ -93,7 +114,6 @@ impl Power {
 struct Walk<'a> {
     layout: &'a Layout,
     sites: &'a [Power],
-    near: Vec<Power>,
     contenders: Vec<Power>,
     /// The powers of all near sites in the middle of the block, then of the contenders at its corners, site by site.
     powers: Vec<f64>,
@@ -102,6 +122,8 @@ struct Walk<'a> {
     owner: Vec<u32>,
     /// For each corner how much mass of whole tiles it stands for.
     weights: Vec<f64>,
+    /// Which contenders may own a part of a tile, and with what powers.
+    left: Vec<usize>,
     of_tile: Vec<(Powers, usize)>,
     polygon: Vec<clip::Corner>,
     spare: Vec<clip::Corner>,
@@ -112,12 +134,12 @@ impl<'a> Walk<'a> {
         Self {
             layout,
             sites,
-            near: Vec::new(),
             contenders: Vec::new(),
             powers: Vec::new(),
             least: Vec::new(),
             owner: Vec::new(),
             weights: Vec::new(),
+            left: Vec::new(),
             of_tile: Vec::new(),
             polygon: Vec::new(),
             spare: Vec::new(),
@@ -127,32 +149,13 @@ impl<'a> Walk<'a> {
     fn block(&mut self, block: usize, near: &[u32], owners: &mut impl Owners) {
         let layout = self.layout;
         let block = &layout.blocks[block];
-        self.near.clear();
-        self.near.extend(near.iter().map(|&i| self.sites[i as usize]));
-        contenders(&self.near, &block.bounds, &mut self.powers, &mut self.contenders);
+        contenders(self.sites, near, &block.bounds, &mut self.powers, &mut self.contenders);
+        self.powers_at_corners(block);
         owners.begin(&self.contenders);
-        let corners = layout.places.of(&block.places);
-        let count = block.places.len();
-        self.least.clear();
-        self.least.resize(count, f64::INFINITY);
-        self.owner.clear();
-        self.owner.resize(count, 0);
-        self.weights.clear();
-        self.weights.resize(count, 0.0);
-        self.powers.clear();
-        self.powers.resize(count * self.contenders.len(), 0.0);
-        for ((k, power), row) in (0..).zip(&self.contenders).zip(self.powers.chunks_exact_mut(count)) {
-            power.at_all(corners, row);
-            for ((value, least), owner) in row.iter().zip(&mut self.least).zip(&mut self.owner) {
-                let less = value < least;
-                *least = if less { *value } else { *least };
-                *owner = if less { k } else { *owner };
-            }
-        }
         for index in block.tiles.clone() {
             let tile = &layout.tiles[index];
             let at = tile.corners.map(|id| id as usize - block.places.start);
-            let [a, b, c] = at.map(|i| self.owner[i]);
+            let (a, b, c) = (self.owner[at[0]], self.owner[at[1]], self.owner[at[2]]);
             // A cell is convex, so a site that owns the three corners owns the tile.
             if a == b && b == c {
                 owners.whole(a as usize, index, tile.mass);
@@ -170,27 +173,70 @@ impl<'a> Walk<'a> {
         owners.end(&self.contenders);
     }
 
+    /// The powers of the contenders at the corners of a block, and who leads there. Drops contenders that the first one
+    /// beats at all of them: tiles lie between corners, so those own nothing.
+    fn powers_at_corners(&mut self, block: &Block) {
+        let corners = self.layout.places.of(&block.places);
+        let count = block.places.len();
+        self.powers.clear();
+        self.powers.resize(count * self.contenders.len(), 0.0);
+        let (first, rows) = self.powers.split_at_mut(count);
+        self.contenders[0].at_all(corners, first);
+        self.least.clear();
+        self.least.extend_from_slice(first);
+        self.owner.clear();
+        self.owner.resize(count, 0);
+        let mut kept = 1;
+        for k in 1..self.contenders.len() {
+            let power = self.contenders[k];
+            let row = &mut rows[(kept - 1) * count..kept * count];
+            power.at_all(corners, row);
+            let ahead = row.iter().zip(&*first).fold(false, |any, (value, first)| any | (value <= first));
+            if !ahead {
+                continue;
+            }
+            for ((value, least), owner) in row.iter().zip(&mut self.least).zip(&mut self.owner) {
+                let less = value < least;
+                *least = if less { *value } else { *least };
+                *owner = if less { kept as u32 } else { *owner };
+            }
+            self.contenders[kept] = power;
+            kept += 1;
+        }
+        self.contenders.truncate(kept);
+        self.weights.clear();
+        self.weights.resize(count, 0.0);
+    }
+
     /// A tile with several owners; `at` says where its corners are in the block.
     fn tile<O: Owners>(&mut self, index: usize, tile: &Tile, at: [usize; 3], owners: &mut O) {
         let count = self.owner.len();
-        let first = at.map(|i| self.owner[i] as usize);
-        let powers_of = |k: usize| at.map(|i| self.powers[k * count + i]);
-        let leaders = first.map(powers_of);
-        self.of_tile.clear();
+        let powers = &self.powers;
+        let powers_of = |k: usize| {
+            let row = &powers[k * count..(k + 1) * count];
+            [row[at[0]], row[at[1]], row[at[2]]]
+        };
+        let leader_of = |c: usize| powers_of(self.owner[at[c]] as usize);
+        let leaders = [leader_of(0), leader_of(1), leader_of(2)];
+        // Most are beaten at all corners by an owner of one; no branches, as nobody can guess which.
+        self.left.resize(self.contenders.len(), 0);
+        let mut left = 0;
         for k in 0..self.contenders.len() {
             let powers = powers_of(k);
-            // Most are beaten at all corners by an owner of one.
-            let beaten = leaders.iter().any(|leader| (0..3).all(|c| leader[c] < powers[c]));
-            if !beaten {
-                self.of_tile.push((powers, k));
-            }
+            let beats =
+                |leader: &Powers| (leader[0] < powers[0]) & (leader[1] < powers[1]) & (leader[2] < powers[2]);
+            self.left[left] = k;
+            left += usize::from(!(beats(&leaders[0]) | beats(&leaders[1]) | beats(&leaders[2])));
         }
+        self.of_tile.clear();
+        self.of_tile.extend(self.left[..left].iter().map(|&k| (powers_of(k), k)));
         clip::prune(&mut self.of_tile);
-        let corners = tile.corners.map(|id| self.layout.places.at(id));
+        let [a, b, c] = tile.corners;
+        let corners = [self.layout.places.at(a), self.layout.places.at(b), self.layout.places.at(c)];
         // What a site owns: its share, that times the mean barycentric coordinates, and its polygon.
         let give = |owners: &mut O, site, share: f64, weights: [f64; 3], polygon: &[clip::Corner]| {
             owners.part(site, index, tile.mass * share, polygon);
-            let [a, b, c] = weights.map(|weight| weight * tile.mass);
+            let [a, b, c] = [weights[0] * tile.mass, weights[1] * tile.mass, weights[2] * tile.mass];
             owners.moment(
                 site,
                 Place {
@@ -213,7 +259,11 @@ impl<'a> Walk<'a> {
             owners.border([k, l], 2.0 * tile.mass * halves.length);
             return;
         }
-        for k in 0..self.of_tile.len() {
+        // The last one owns what the others leave.
+        let last = self.of_tile.len() - 1;
+        let others = if O::POLYGONS { last + 1 } else { last };
+        let (mut rest, mut rest_weights) = (1.0, [1.0 / 3.0; 3]);
+        for k in 0..others {
             if !clip::cell(&self.of_tile, k, &mut self.polygon, &mut self.spare) {
                 continue;
             }
@@ -222,7 +272,10 @@ impl<'a> Walk<'a> {
                 continue;
             }
             let (own, site) = self.of_tile[k];
-            give(owners, site, share, [(1.0 - u - v) * share, u * share, v * share], &self.polygon);
+            let weights = [(1.0 - u - v) * share, u * share, v * share];
+            rest -= share;
+            (0..3).for_each(|c| rest_weights[c] -= weights[c]);
+            give(owners, site, share, weights, &self.polygon);
             for e in 0..self.polygon.len() {
                 let (p, q) = (self.polygon[e], self.polygon[(e + 1) % self.polygon.len()]);
                 if let Some((theirs, other)) = p.behind.filter(|&o| o > k).map(|o| self.of_tile[o]) {
@@ -231,30 +284,35 @@ impl<'a> Walk<'a> {
                 }
             }
         }
+        if !O::POLYGONS && rest > NOTHING {
+            give(owners, self.of_tile[last].1, rest, rest_weights, &[]);
+        }
     }
 }
+
+/// Smaller shares of a tile are rounding errors.
+const NOTHING: f64 = 1e-12;
 
 fn times(place: &Place, factor: f64) -> Place {
     Place { position: place.position * factor, normal: place.normal * factor }
 }
 
-/// Of some sites those that may own a place within the bounds; never none.
-fn contenders(all: &[Power], bounds: &Bounds, powers: &mut Vec<f64>, left: &mut Vec<Power>) {
+/// Of some sites those that may own a place within the bounds, the one that leads in the middle first. `powers` is
+/// scratch.
+fn contenders(sites: &[Power], near: &[u32], bounds: &Bounds, powers: &mut Vec<f64>, left: &mut Vec<Power>) {
     left.clear();
     powers.clear();
     let Bounds { middle, half } = bounds;
-    let mut best = 0;
-    for (k, power) in all.iter().enumerate() {
-        powers.push(power.at(middle));
-        if powers[k] < powers[best] {
-            best = k;
-        }
-    }
-    for (power, value) in all.iter().zip(&*powers) {
+    powers.extend(near.iter().map(|&i| sites[i as usize].at(middle)));
+    let best = (1..near.len()).fold(0, |best, k| if powers[k] < powers[best] { k } else { best });
+    let first = sites[near[best] as usize];
+    left.push(first);
+    for (k, &i) in near.iter().enumerate().filter(|(k, _)| *k != best) {
+        let power = &sites[i as usize];
         // So much the lead of the best changes at most within the bounds.
-        let slope = power.slope.minus(&all[best].slope);
+        let slope = power.slope.minus(&first.slope);
         let change = slope.position.abs().dot(half.position) + slope.normal.abs().dot(half.normal);
-        if value - powers[best] <= change {
+        if powers[k] - powers[best] <= change {
             left.push(*power);
         }
     }

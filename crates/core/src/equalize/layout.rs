@@ -35,6 +35,12 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
+    /// The box of the positions, so much larger on all sides.
+    pub(super) fn widened(&self, by: f64) -> (DVec3, DVec3) {
+        let (middle, half) = (self.middle.position, self.half.position + by);
+        (middle - half, middle + half)
+    }
+
     fn between(low: [DVec3; 2], high: [DVec3; 2]) -> Self {
         let place = |[position, normal]: [DVec3; 2]| Place { position, normal };
         Self {
@@ -50,8 +56,9 @@ pub(super) struct Places([Vec<f64>; 6]);
 
 impl Places {
     pub(super) fn at(&self, i: u32) -> Place {
-        let [x, y, z, u, v, w] = [0, 1, 2, 3, 4, 5].map(|axis| self.0[axis][i as usize]);
-        Place { position: DVec3::new(x, y, z), normal: DVec3::new(u, v, w) }
+        let [x, y, z, u, v, w] = &self.0;
+        let i = i as usize;
+        Place { position: DVec3::new(x[i], y[i], z[i]), normal: DVec3::new(u[i], v[i], w[i]) }
     }
 
     /// The coordinates of some of the places.
@@ -108,6 +115,11 @@ impl Layout {
         tile.corners.map(|id| self.places.at(id).position)
     }
 
+    /// The block that holds a tile.
+    pub(super) fn block_of(&self, tile: u32) -> usize {
+        self.blocks.partition_point(|block| block.tiles.end <= tile as usize)
+    }
+
     /// Adds what was laid out by itself.
     fn append(&mut self, mut other: Self) {
         let (tiles, places) = (self.tiles.len(), self.places.len());
@@ -133,31 +145,16 @@ pub(super) struct Due {
     pub(super) block: u32,
 }
 
-/// Tiles that lie close together, and their mean place.
-#[derive(Clone, Debug)]
-struct Clump {
-    tiles: Range<u32>,
-    patch: u32,
-    mass: f64,
-    centre: Place,
-}
-
 /// Balances clumps and points (in the order of their patches, `counts` for each); says in which block each point is
 /// due, block by block.
 pub(super) fn lay_out(tiles: &Tiles, counts: &[usize], points: Vec<Item>) -> (Layout, Vec<Due>) {
-    const CHUNK: usize = 1 << 8;
-    let ends = &tiles.clump_ends;
-    let clumps = parallel::map(ends.len(), |c| {
-        let start = if c == 0 { 0 } else { ends[c - 1] };
-        clump(tiles, start..ends[c])
-    });
+    let clumps = parallel::map(tiles.clump_ends.len(), |id| clump(tiles, id as u32));
     let mut items: Vec<Vec<Item>> = vec![Vec::new(); counts.len()];
-    for (id, clump) in (0..).zip(&clumps) {
-        let Place { position, normal } = clump.centre;
-        items[clump.patch as usize].push(Item { position, normal, mass: clump.mass, id });
+    for (patch, item) in clumps {
+        items[patch as usize].push(item);
     }
     let mut next = points.into_iter();
-    let mut order: Vec<u32> = Vec::with_capacity(clumps.len());
+    let mut order: Vec<u32> = Vec::with_capacity(tiles.clump_ends.len());
     let mut regions = Vec::new();
     let mut dues = Vec::new();
     for (mut items, &count) in items.into_iter().zip(counts) {
@@ -171,12 +168,13 @@ pub(super) fn lay_out(tiles: &Tiles, counts: &[usize], points: Vec<Item>) -> (La
         }
         order.extend(items.iter().map(|item| item.id));
     }
-    let pieces = parallel::map_chunks(regions.len(), CHUNK, |range| {
+    // Each piece has a table of all places, so there are few.
+    let chunk = regions.len().div_ceil(16);
+    let pieces = parallel::map_chunks(regions.len(), chunk, |range| {
         let mut layout = Layout::default();
-        let mut ids = Vec::new();
+        let mut numbers = Numbers { of_place: vec![0; tiles.places.len()], given: 0 };
         for (members, points) in &regions[range] {
-            let ranges = order[members.clone()].iter().map(|&c| clumps[c as usize].tiles.clone());
-            block(tiles, ranges, *points, &mut ids, &mut layout);
+            block(tiles, &order[members.clone()], *points, &mut numbers, &mut layout);
         }
         layout
     });
@@ -196,44 +194,47 @@ fn centre(places: &[Place], tile: &Tile) -> Place {
     }
 }
 
-fn clump(all: &Tiles, tiles: Range<u32>) -> Clump {
-    let members = &all.tiles[tiles.start as usize..tiles.end as usize];
-    let mut mass = 0.0;
+/// A clump as a mass at its mean place, and its patch.
+fn clump(all: &Tiles, id: u32) -> (u32, Item) {
+    let (mut patch, mut mass) = (0, 0.0);
     let mut moment = Place::default();
-    for tile in members {
+    for tile in all.clump(id as usize) {
         let centre = centre(&all.places, tile);
+        patch = tile.patch;
         mass += tile.mass;
         moment.position += centre.position * tile.mass;
         moment.normal += centre.normal * tile.mass;
     }
-    let centre = Place { position: moment.position / mass, normal: moment.normal / mass };
-    Clump { tiles, patch: members[0].patch, mass, centre }
+    (patch, Item { position: moment.position / mass, normal: moment.normal / mass, mass, id })
 }
 
-/// Adds a block with the tiles of these ranges. `ids` is scratch.
-fn block(
-    all: &Tiles,
-    ranges: impl Iterator<Item = Range<u32>>,
-    points: u32,
-    ids: &mut Vec<u32>,
-    layout: &mut Layout,
-) {
+/// Numbers the places of one block after the other.
+struct Numbers {
+    /// The last number of each place, plus one.
+    of_place: Vec<u32>,
+    given: u32,
+}
+
+impl Numbers {
+    /// The number of a place, if it got one since so many were given.
+    fn known(&self, place: u32, since: u32) -> Option<u32> {
+        let number = self.of_place[place as usize];
+        (number > since).then(|| number - 1)
+    }
+
+    fn give(&mut self, place: u32) -> u32 {
+        self.of_place[place as usize] = self.given + 1;
+        self.given += 1;
+        self.given - 1
+    }
+}
+
+/// Adds a block with the tiles of these clumps.
+fn block(all: &Tiles, clumps: &[u32], points: u32, numbers: &mut Numbers, layout: &mut Layout) {
     let (first_tile, first_place) = (layout.tiles.len(), layout.places.len());
-    for range in ranges {
-        layout.tiles.extend(&all.tiles[range.start as usize..range.end as usize]);
-    }
+    layout.tiles.extend(clumps.iter().flat_map(|&id| all.clump(id as usize)));
     let tiles = &mut layout.tiles[first_tile..];
-    ids.clear();
-    ids.extend(tiles.iter().flat_map(|tile| tile.corners));
-    ids.sort_unstable();
-    ids.dedup();
     let (mut low, mut high) = ([DVec3::INFINITY; 2], [DVec3::NEG_INFINITY; 2]);
-    for &id in &*ids {
-        let place = &all.places[id as usize];
-        layout.places.push(place);
-        low = [low[0].min(place.position), low[1].min(place.normal)];
-        high = [high[0].max(place.position), high[1].max(place.normal)];
-    }
     let (mut mass, mut area) = (0.0, 0.0);
     let mut moment = Place::default();
     let mut centres = Vec::with_capacity(tiles.len());
@@ -244,8 +245,16 @@ fn block(
         area += tile.area;
         moment.position += centre.position * tile.mass;
         moment.normal += centre.normal * tile.mass;
-        // Every corner is in the list.
-        tile.corners = tile.corners.map(|id| (first_place + ids.partition_point(|&i| i < id)) as u32);
+        for corner in &mut tile.corners {
+            let id = *corner;
+            *corner = numbers.known(id, first_place as u32).unwrap_or_else(|| {
+                let place = &all.places[id as usize];
+                layout.places.push(place);
+                low = [low[0].min(place.position), low[1].min(place.normal)];
+                high = [high[0].max(place.position), high[1].max(place.normal)];
+                numbers.give(id)
+            });
+        }
     }
     let distance = libm::sqrt(area / f64::from(points));
     let mean = Place { position: moment.position / mass, normal: moment.normal / mass };

@@ -8,6 +8,8 @@ mod balance;
 mod capacity;
 mod clip;
 mod diagram;
+mod holdings;
+mod laplacian;
 mod layout;
 mod near;
 mod normals;
@@ -15,6 +17,7 @@ mod owners;
 mod patches;
 mod places;
 mod relax;
+mod settle;
 mod sides;
 mod spacing;
 mod tiles;
@@ -33,12 +36,13 @@ use crate::parallel;
 use crate::progress::Progress;
 use crate::sample::SurfacePoint;
 use balance::Item;
-use layout::{Due, Layout, Place, lay_out};
+use layout::{Due, Place, lay_out};
 use near::{Near, Site};
-use owners::{Cell, diagram};
+use owners::diagram;
 use patches::Patches;
 use places::Spot;
-use relax::{Relaxed, relax};
+use relax::relax;
+use settle::settle;
 use sides::Sides;
 use tiles::{Scale, tiles};
 
@@ -126,7 +130,9 @@ pub fn equalize(
         };
         dues.iter().map(site).collect()
     };
-    let nearest = nearest_cells(&layout, &sites(&|due| places[due.point as usize]));
+    let before = sites(&|due| places[due.point as usize]);
+    let near = Near::find(&layout, &before);
+    let nearest: Vec<f64> = diagram(&layout, &near, &before).cells.iter().map(|cell| cell.mass).collect();
     let spread_before = spread(&nearest);
     let start = sites(&|due| {
         let block = &layout.blocks[due.block as usize];
@@ -143,21 +149,21 @@ pub fn equalize(
     let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
     let homes: Vec<Place> = dues.iter().map(|due| layout.blocks[due.block as usize].centre).collect();
-    let relaxed = relax(&layout, start, &homes, &wanted, options.rounds, progress);
+    let relaxed = relax(&layout, near, start, &homes, &wanted, options.rounds, progress);
     let sides = Sides::new(mesh, strip_of_face, density, n);
     let mut settled = settle(&layout, &relaxed, sides.as_ref());
     spacing::make_way(&layout, &relaxed, sides.as_ref(), &mut settled);
     if let Some(options) = &options.for_views {
         views::choose(mesh, scale.middle, &layout, &relaxed, &mut settled, options, progress);
     }
-    let masses: Vec<f64> = relaxed.diagram.cells.iter().map(|cell| cell.mass).collect();
+    let masses: Vec<f64> = relaxed.cells.iter().map(|cell| cell.mass).collect();
     if spread(&masses) > spread_before && spread(&masses) > UNEVEN {
         return unmoved(points, &dues, nearest, spread_before);
     }
     let mut moved = 0.0;
     let mut result = points.to_vec();
     let mut cells = vec![0.0; n];
-    for ((due, place), cell) in dues.iter().zip(settled).zip(&relaxed.diagram.cells) {
+    for ((due, place), cell) in dues.iter().zip(settled).zip(&relaxed.cells) {
         let slot = due.point as usize;
         cells[slot] = cell.mass;
         if let Some(Spot { face, place }) = place {
@@ -185,11 +191,6 @@ fn unmoved(points: &[SurfacePoint], dues: &[Due], nearest: Vec<f64>, spread: f64
     Equalized { points: points.to_vec(), cells, report }
 }
 
-/// The masses of the cells of sites without weights.
-fn nearest_cells(layout: &Layout, sites: &[Site]) -> Vec<f64> {
-    diagram(layout, &Near::find(layout, sites), sites).cells.iter().map(|c| c.mass).collect()
-}
-
 /// The points in the order of their patches; what one patch has too many of, the next ones get.
 fn items(
     mesh: &SurfaceMesh,
@@ -208,19 +209,6 @@ fn items(
         id,
     };
     order.into_iter().map(item).collect()
-}
-
-/// The place of each cell's tiles that lies nearest to its centroid, on the side where the cell's point is due; `None`
-/// for an empty cell.
-fn settle(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>) -> Vec<Option<Spot>> {
-    let centroid = |cell: &Cell| (cell.mass > 0.0).then(|| cell.moment.position / cell.mass);
-    let centroids: Vec<_> = relaxed.diagram.cells.iter().map(centroid).collect();
-    let Some(sides) = sides else {
-        return owners::nearest(layout, &relaxed.near, &relaxed.sites, &centroids, |_, _| true);
-    };
-    let due = sides.share_out(layout, &relaxed.near, &relaxed.sites);
-    let is_due = |site: u32, face| due[site as usize] == Some(sides.of(face));
-    owners::nearest(layout, &relaxed.near, &relaxed.sites, &centroids, is_due)
 }
 
 /// Standard deviation over mean.

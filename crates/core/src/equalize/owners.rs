@@ -1,14 +1,11 @@
-//! What is asked of the power diagram: cells and borders, pieces, places near the middles of cells.
+//! What is asked of the power diagram: cells and borders, pieces.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 use super::clip;
-use super::diagram::{Owners, Power, walk};
+use super::diagram::{Owners, Power, walk, walk_some};
 use super::layout::{Layout, Place};
 use super::near::{Near, Site};
-use super::places::Spot;
-use crate::geometry::triangle;
-use crate::ids::FaceId;
 
 /// What a site owns.
 #[derive(Clone, Copy, Debug, Default)]
@@ -19,7 +16,7 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    fn add(&mut self, moment: Place) {
+    pub(super) fn add(&mut self, moment: Place) {
         self.moment.position += moment.position;
         self.moment.normal += moment.normal;
     }
@@ -113,82 +110,6 @@ impl Owners for Sums {
     }
 }
 
-/// For each site the place of its cell's tiles that lies nearest to a wanted place, on faces where it `may` stand; `None`
-/// where nothing is wanted or there is no such place.
-pub(super) fn nearest(
-    layout: &Layout,
-    near: &Near,
-    sites: &[Site],
-    wanted: &[Option<DVec3>],
-    may: impl Fn(u32, FaceId) -> bool + Sync,
-) -> Vec<Option<Spot>> {
-    let may = &may;
-    let new = || Nearest { layout, wanted, may, of_block: Vec::new(), best: Vec::new(), found: Vec::new() };
-    let mut best: Vec<Option<(f64, Spot)>> = vec![None; sites.len()];
-    for (site, distance, spot) in walk(layout, near, sites, new).into_iter().flat_map(|n| n.found) {
-        let best = &mut best[site as usize];
-        if best.is_none_or(|(least, _)| distance < least) {
-            *best = Some((distance, spot));
-        }
-    }
-    best.into_iter().map(|best| best.map(|(_, spot)| spot)).collect()
-}
-
-struct Nearest<'a, May> {
-    layout: &'a Layout,
-    wanted: &'a [Option<DVec3>],
-    may: &'a May,
-    /// The contenders of the block, with what is wanted for each.
-    of_block: Vec<(u32, Option<DVec3>)>,
-    best: Vec<Option<(f64, Spot)>>,
-    found: Vec<(u32, f64, Spot)>,
-}
-
-impl<May: Fn(u32, FaceId) -> bool> Owners for Nearest<'_, May> {
-    const POLYGONS: bool = false;
-
-    fn begin(&mut self, contenders: &[Power]) {
-        self.of_block.clear();
-        self.of_block.extend(contenders.iter().map(|power| (power.site, self.wanted[power.site as usize])));
-        self.best.clear();
-        self.best.resize(contenders.len(), None);
-    }
-
-    fn whole(&mut self, site: usize, tile: usize, _: f64) {
-        let (id, Some(wanted)) = self.of_block[site] else { return };
-        let tile = &self.layout.tiles[tile];
-        if !(self.may)(id, tile.face) {
-            return;
-        }
-        let [a, b, c] = self.layout.corners(tile);
-        let least = self.best[site].map_or(f64::INFINITY, |(least, _)| least);
-        // A tile whose nearest corner is farther by more than its longest side has no nearer place.
-        let (_, side) = triangle::longest_side([a, b, c]);
-        let corner = a.distance_squared(wanted);
-        if corner > 2.0 * (least + side) {
-            return;
-        }
-        let place = triangle::at(a, b, c, triangle::nearest(a, b, c, wanted));
-        let distance = place.distance_squared(wanted);
-        if distance < least {
-            self.best[site] = Some((distance, Spot { face: tile.face, place }));
-        }
-    }
-
-    fn part(&mut self, site: usize, tile: usize, mass: f64, _: &[clip::Corner]) {
-        self.whole(site, tile, mass);
-    }
-
-    fn moment(&mut self, _: usize, _: Place) {}
-
-    fn border(&mut self, _: [usize; 2], _: f64) {}
-
-    fn end(&mut self, contenders: &[Power]) {
-        let best = self.best.iter().zip(contenders);
-        self.found.extend(best.filter_map(|(best, power)| best.map(|(d, spot)| (power.site, d, spot))));
-    }
-}
-
 /// The part of a tile that a site owns.
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
@@ -199,9 +120,9 @@ pub(super) struct Piece {
     pub(super) polygon: Vec<DVec2>,
 }
 
-/// All pieces, in no order that matters. Sums over a site's pieces are its cell.
-pub(super) fn pieces(layout: &Layout, near: &Near, sites: &[Site]) -> Vec<Piece> {
-    walk(layout, near, sites, Cut::default).into_iter().flat_map(|cut| cut.pieces).collect()
+/// All pieces of some blocks, in no order that matters. Sums over a site's pieces are what it owns there.
+pub(super) fn pieces(layout: &Layout, near: &Near, sites: &[Site], blocks: &[u32]) -> Vec<Piece> {
+    walk_some(layout, near, sites, blocks, Cut::default).into_iter().flat_map(|cut| cut.pieces).collect()
 }
 
 #[derive(Default)]

@@ -26,15 +26,22 @@ pub(super) fn spots(
     count: u32,
     seed: u64,
 ) -> Vec<Vec<Spot>> {
+    let mut wanted = vec![false; layout.blocks.len()];
+    for site in (0..relaxed.sites.len()).filter(|&site| wants(site)) {
+        for holding in relaxed.holdings.of(site) {
+            wanted[layout.block_of(holding.tile)] = true;
+        }
+    }
+    let blocks: Vec<u32> = (0..).zip(wanted).filter(|(_, wanted)| *wanted).map(|(block, _)| block).collect();
     let mut pieces_of: Vec<Vec<Piece>> = vec![Vec::new(); relaxed.sites.len()];
-    for piece in pieces(layout, &relaxed.near, &relaxed.sites) {
+    for piece in pieces(layout, &relaxed.near, &relaxed.sites, &blocks) {
         if wants(piece.site as usize) {
             pieces_of[piece.site as usize].push(piece);
         }
     }
     parallel::map(pieces_of.len(), |site| {
         let mut random = Random::new(seed ^ site as u64, PLACES);
-        let step = relaxed.diagram.cells[site].mass / f64::from(count);
+        let step = relaxed.cells[site].mass / f64::from(count);
         let (mut passed, mut next) = (0.0, step * random.unit());
         let mut spots = Vec::new();
         for piece in &pieces_of[site] {

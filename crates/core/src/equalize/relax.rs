@@ -5,9 +5,10 @@
 
 use glam::DVec3;
 
-use super::capacity::weight_steps;
+use super::capacity::{Reach, weight_steps};
+use super::holdings::{Holdings, holdings};
 use super::layout::{Layout, Place};
-use super::near::{Near, Runs, SLACK, Site};
+use super::near::{Near, Runs, Site};
 use super::owners::{Cell, Diagram, diagram};
 use crate::progress::Progress;
 
@@ -20,53 +21,50 @@ const MOST_STEP: f64 = 1.0;
 /// At most this many rounds at the end in which only weights change.
 const SETTLING: u32 = 8;
 
-/// Weights are settled when the cells' masses spread by at most this share of the mean, and none is off by more than
-/// [`CLOSEST`].
-const CLOSE: f64 = 1e-4;
+/// Weights are settled by one more step when the cells' masses spread by at most this share of the mean, and none is off
+/// by more than [`CLOSEST`].
+const CLOSE: f64 = 0.005;
 
 /// See [`CLOSE`].
-const CLOSEST: f64 = 0.02;
+const CLOSEST: f64 = 0.05;
 
 /// The points after relaxation, with their cells.
 pub(super) struct Relaxed {
     pub(super) sites: Vec<Site>,
-    pub(super) diagram: Diagram,
     pub(super) near: Near,
+    pub(super) cells: Vec<Cell>,
+    pub(super) holdings: Holdings,
 }
 
-/// Moves the sites for a number of rounds; `wanted` is the mass for each of them, `homes` says where they are due.
+/// Moves the sites for a number of rounds; `near` lists them about where they are, `wanted` is the mass for each of them, `homes` says where they are due.
 pub(super) fn relax(
     layout: &Layout,
+    mut near: Near,
     mut sites: Vec<Site>,
     homes: &[Place],
     wanted: &[f64],
     rounds: u32,
     progress: &dyn Progress,
 ) -> Relaxed {
-    let mut near = Near::find(layout, &sites);
-    // How far the farthest site may have moved since, in distances of the points.
-    let mut drift = 0.0;
-    let mut round = 0;
-    loop {
-        if drift > SLACK {
-            near = Near::find(layout, &sites);
-            drift = 0.0;
+    let mut settled = false;
+    for round in 0..=rounds + SETTLING {
+        near.follow(layout, &sites);
+        if settled || round == rounds + SETTLING || progress.is_cancelled() {
+            break;
         }
         let diagram = diagram(layout, &near, &sites);
-        let settled = round >= rounds && close(&diagram, wanted);
-        if settled || round == rounds + SETTLING || progress.is_cancelled() {
-            return Relaxed { sites, diagram, near };
-        }
-        // The last rounds only fit the weights to where the points are.
+        // The last rounds only fit the weights to where the points are; the very last needs no look at what it did,
+        // because errors are squared in each.
+        settled = round >= rounds && close(&diagram, wanted);
         let step = match round + 1 {
             r if r < rounds => OVERSHOOT,
             r if r == rounds => 1.0,
             _ => 0.0,
         };
+        let reach = if round + 1 < rounds { Reach::Near } else { Reach::Far };
         let moves: Vec<DVec3> =
             sites.iter().zip(&diagram.cells).map(|(s, c)| to_centroid(s, c) * step).collect();
-        let steps = weight_steps(&diagram, &sites, &moves, wanted);
-        let mut farthest = 0.0_f64;
+        let steps = weight_steps(&diagram, &sites, &moves, wanted, reach);
         for (((site, cell), by), step) in sites.iter_mut().zip(&diagram.cells).zip(&moves).zip(&steps) {
             let most = MOST_STEP * site.distance * site.distance;
             site.place.position += *by;
@@ -74,15 +72,12 @@ pub(super) fn relax(
             if round < rounds && cell.mass > 0.0 {
                 site.place.normal = cell.moment.normal / cell.mass;
             }
-            farthest = farthest.max(by.length() / site.distance);
         }
-        drift += farthest;
-        if regain(&mut sites, homes, &diagram, wanted, round < rounds) {
-            drift = f64::INFINITY;
-        }
-        round += 1;
+        regain(&mut sites, homes, &diagram, wanted, round < rounds);
         progress.advance(1);
     }
+    let (cells, holdings) = holdings(layout, &near, &sites);
+    Relaxed { sites, near, cells, holdings }
 }
 
 fn close(diagram: &Diagram, wanted: &[f64]) -> bool {
@@ -117,18 +112,17 @@ const SIGHT: f64 = 3.0;
 
 /// Gives lost cells a part of the surface again. If sites `may_move`, a lost one goes into a heavy cell in sight, which
 /// the two then halve: what it should have had its neighbours hold, and from farther away mass would have to pass
-/// through many cells. Others go back to where they are due, with the weight for a foothold. Whether any site moved.
-fn regain(sites: &mut [Site], homes: &[Place], diagram: &Diagram, wanted: &[f64], may_move: bool) -> bool {
+/// through many cells. Others go back to where they are due, with the weight for a foothold.
+fn regain(sites: &mut [Site], homes: &[Place], diagram: &Diagram, wanted: &[f64], may_move: bool) {
     let share = |i: usize| diagram.cells[i].mass / wanted[i];
     let lost: Vec<usize> = (0..sites.len()).filter(|&i| share(i) < LOST).collect();
     if lost.is_empty() {
-        return false;
+        return;
     }
     let places: Vec<DVec3> = sites.iter().map(|site| site.place.position).collect();
     let runs = Runs::new(&places);
     let mut halved = vec![false; sites.len()];
     let mut near = Vec::new();
-    let mut moved = false;
     for i in lost {
         let own = sites[i];
         near.clear();
@@ -144,10 +138,8 @@ fn regain(sites: &mut [Site], homes: &[Place], diagram: &Diagram, wanted: &[f64]
         if let Some(heavy) = nearest.filter(|_| may_move) {
             halve(sites, i, heavy, &diagram.cells[heavy]);
             halved[heavy] = true;
-            moved = true;
         } else if share(i) < GONE {
             let own = Site { place: if may_move { homes[i] } else { own.place }, ..own };
-            moved |= may_move;
             near.clear();
             runs.within(own.place.position, SIGHT * own.distance, |j| sites[j].patch == own.patch, &mut near);
             let lead = |&j: &u32| {
@@ -158,7 +150,6 @@ fn regain(sites: &mut [Site], homes: &[Place], diagram: &Diagram, wanted: &[f64]
             sites[i] = Site { weight: least + FOOTHOLD * own.distance * own.distance, ..own };
         }
     }
-    moved
 }
 
 /// Puts a lost site into a heavy one's cell, on two sides of the centroid.

@@ -3,13 +3,12 @@
 
 use glam::DVec3;
 
-use super::clip;
-use super::diagram::{Owners, Power, walk};
-use super::layout::{Layout, Place};
-use super::near::{Near, Site};
+use super::holdings::Holdings;
+use super::layout::Layout;
 use crate::density::Density;
 use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
+use crate::parallel;
 use crate::sets::Sets;
 
 /// Neighbours whose normals are at least this far apart (squared distance; 4 sin^2(15 degrees)) meet in a crease.
@@ -71,18 +70,19 @@ impl Sides {
         self.of_face[face.index()]
     }
 
-    /// The side on which the point of each site stands; `None` where its cell is empty.
-    pub(super) fn share_out(&self, layout: &Layout, near: &Near, sites: &[Site]) -> Vec<Option<u32>> {
-        let new = || Parts { layout, sides: self, of_block: Vec::new(), parts: Vec::new() };
-        let mut parts: Vec<Vec<Part>> = vec![Vec::new(); sites.len()];
-        for (site, part) in walk(layout, near, sites, new).into_iter().flat_map(|p| p.parts) {
-            add(&mut parts[site as usize], part);
-        }
-        for parts in &mut parts {
+    /// The side on which the point of each of so many sites stands; `None` where its cell is empty.
+    pub(super) fn share_out(&self, layout: &Layout, holdings: &Holdings, sites: usize) -> Vec<Option<u32>> {
+        let mut parts: Vec<Vec<Part>> = parallel::map(sites, |site| {
+            let mut parts = Vec::new();
+            for holding in holdings.of(site) {
+                let side = self.of(layout.tiles[holding.tile as usize].face);
+                add(&mut parts, Part { side, share: holding.mass });
+            }
             let mass: f64 = parts.iter().map(|p| p.share).sum();
             parts.iter_mut().for_each(|p| p.share /= mass);
             parts.retain(|p| p.share > 0.0);
-        }
+            parts
+        });
         round(&mut parts, &self.normals);
         let largest =
             |parts: &Vec<Part>| parts.iter().max_by(|a, b| a.share.total_cmp(&b.share)).map(|part| part.side);
@@ -108,42 +108,6 @@ fn add(parts: &mut Vec<Part>, part: Part) {
     match parts.iter_mut().find(|p| p.side == part.side) {
         Some(p) => p.share += part.share,
         None => parts.push(part),
-    }
-}
-
-/// Adds up what sites own on each side.
-struct Parts<'a> {
-    layout: &'a Layout,
-    sides: &'a Sides,
-    of_block: Vec<Vec<Part>>,
-    parts: Vec<(u32, Part)>,
-}
-
-impl Owners for Parts<'_> {
-    const POLYGONS: bool = false;
-
-    fn begin(&mut self, contenders: &[Power]) {
-        self.of_block.iter_mut().for_each(Vec::clear);
-        self.of_block.resize(contenders.len().max(self.of_block.len()), Vec::new());
-    }
-
-    fn whole(&mut self, site: usize, tile: usize, mass: f64) {
-        let side = self.sides.of(self.layout.tiles[tile].face);
-        add(&mut self.of_block[site], Part { side, share: mass });
-    }
-
-    fn part(&mut self, site: usize, tile: usize, mass: f64, _: &[clip::Corner]) {
-        self.whole(site, tile, mass);
-    }
-
-    fn moment(&mut self, _: usize, _: Place) {}
-
-    fn border(&mut self, _: [usize; 2], _: f64) {}
-
-    fn end(&mut self, contenders: &[Power]) {
-        for (parts, power) in self.of_block.iter().zip(contenders) {
-            self.parts.extend(parts.iter().map(|part| (power.site, *part)));
-        }
     }
 }
 

@@ -9,6 +9,7 @@ use super::near::Runs;
 use super::places::{Spot, spots};
 use super::relax::Relaxed;
 use super::sides::Sides;
+use crate::parallel;
 
 /// The distance that points keep, in distances of the points: a little more than half of the hexagonal ideal, which is
 /// sqrt(2 / sqrt(3)) = 1.0746.
@@ -32,27 +33,31 @@ pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>
     let mut at: Vec<DVec3> =
         relaxed.sites.iter().zip(&*own).map(|(s, o)| o.map_or(s.place.position, |o| o.place)).collect();
     let kept = |i: usize, j: usize| KEPT * relaxed.sites[i].distance.min(relaxed.sites[j].distance);
-    let mut seen: Vec<Vec<u32>> = vec![Vec::new(); at.len()];
-    let mut crowded = Vec::new();
     let runs = Runs::new(&at);
-    for i in 0..at.len() {
+    let within = |i: usize, sight: f64| {
         let mut near = Vec::new();
-        runs.within(at[i], SIGHT * relaxed.sites[i].distance, |j| j != i, &mut near);
-        if near.iter().any(|&j| at[i].distance(at[j as usize]) < kept(i, j as usize)) {
-            crowded.push(i);
-        }
-        seen[i] = near;
-    }
+        runs.within(at[i], sight * relaxed.sites[i].distance, |j| j != i, &mut near);
+        near
+    };
+    let is_crowded =
+        |i: usize| within(i, KEPT).iter().any(|&j| at[i].distance(at[j as usize]) < kept(i, j as usize));
+    let crowded: Vec<usize> = (0..)
+        .zip(parallel::map(at.len(), is_crowded))
+        .filter(|(_, crowded)| *crowded)
+        .map(|(i, _)| i)
+        .collect();
     if crowded.is_empty() {
         return;
     }
     let mut wants = vec![false; at.len()];
     for &i in &crowded {
         wants[i] = true;
-        for &j in &seen[i] {
+        for j in within(i, SIGHT) {
             wants[j as usize] = true;
         }
     }
+    let seen: Vec<Vec<u32>> =
+        parallel::map(at.len(), |i| if wants[i] { within(i, SIGHT) } else { Vec::new() });
     let spots = spots(layout, relaxed, |i| wants[i], CHOICES, 0);
     for _ in 0..SWEEPS {
         let mut changed = false;
@@ -68,7 +73,7 @@ pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>
             if short(now.place) == 0.0 {
                 continue;
             }
-            let cell = &relaxed.diagram.cells[i];
+            let cell = &relaxed.cells[i];
             let centroid = cell.moment.position / cell.mass;
             let cost = |spot: &Spot| WEIGHT * short(spot.place) + spot.place.distance_squared(centroid);
             let mut best = (cost(&now), now);

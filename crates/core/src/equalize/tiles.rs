@@ -27,9 +27,20 @@ pub(super) struct Tile {
 pub(super) struct Tiles {
     /// The corners of the tiles, relative to the middle of the mesh, so that squares of places lose no digits.
     pub(super) places: Vec<Place>,
-    pub(super) tiles: Vec<Tile>,
-    /// Where each clump ends; ascending.
+    /// Face by face.
+    tiles: Vec<Tile>,
+    /// Which tiles the clumps have, one clump after the other.
+    order: Vec<u32>,
+    /// Where each clump ends in that order; ascending.
     pub(super) clump_ends: Vec<u32>,
+}
+
+impl Tiles {
+    /// The tiles of a clump.
+    pub(super) fn clump(&self, clump: usize) -> impl Iterator<Item = &Tile> + Clone {
+        let start = if clump == 0 { 0 } else { self.clump_ends[clump - 1] as usize };
+        self.order[start..self.clump_ends[clump] as usize].iter().map(|&tile| &self.tiles[tile as usize])
+    }
 }
 
 /// What the surface is cut into tiles by.
@@ -44,7 +55,7 @@ pub(super) struct Scale<'a> {
 }
 
 /// No side of a tile is longer than this many distances of the points there, but for slender ones: see [`SLICE`].
-const LONGEST: f64 = 1.0;
+const LONGEST: f64 = 1.5;
 
 /// A slender face is cut into about this many tiles at most, and as many more for each point that is due on it: a needle 1e12
 /// times as long as wide would make millions. None shorter than 32 distances of the points comes near it.
@@ -71,7 +82,9 @@ type Key = (u32, u32, u64);
 struct Cut {
     /// Corners that the faces do not share with others.
     places: Vec<Place>,
-    tiles: Vec<(Key, Tile)>,
+    tiles: Vec<Tile>,
+    /// The key of each tile.
+    keys: Vec<Key>,
 }
 
 /// Cuts the faces whose patch is given into tiles; faces without mass have none. Clumps of tiles that lie close
@@ -94,7 +107,11 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
     // On needles cubes of clumps are smaller than what keys tell apart.
     let smallest = (high - low).max_element() / KEYS;
     let pieces = parallel::map_chunks(mesh.face_count(), CHUNK, |range| {
-        let mut cut = Cut { places: Vec::new(), tiles: Vec::with_capacity(range.len()) };
+        let mut cut = Cut {
+            places: Vec::new(),
+            tiles: Vec::with_capacity(range.len()),
+            keys: Vec::with_capacity(range.len()),
+        };
         for index in range {
             let face = FaceId::new(index);
             let Some(patch) = patch_of_face[index] else { continue };
@@ -138,38 +155,26 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
         cut
     });
     // Corners of faces by themselves come after the shared ones, piece by piece.
-    let mut keys: Vec<(Key, (u32, u32))> = Vec::with_capacity(pieces.iter().map(|p| p.tiles.len()).sum());
-    let mut before = Vec::with_capacity(pieces.len());
-    for (p, piece) in (0..).zip(&pieces) {
-        before.push(places.len() as u32 - shared);
-        places.extend(&piece.places);
-        keys.extend((0..).zip(&piece.tiles).map(|(i, (key, _))| (*key, (p, i))));
+    let count = pieces.iter().map(|piece| piece.tiles.len()).sum();
+    let mut tiles: Vec<Tile> = Vec::with_capacity(count);
+    let mut keys: Vec<(Key, u32)> = Vec::with_capacity(count);
+    for piece in pieces {
+        let before = places.len() as u32 - shared;
+        let moved = |id: u32| if id < shared { id } else { id + before };
+        keys.extend(piece.keys.into_iter().zip(tiles.len() as u32..));
+        tiles.extend(piece.tiles.into_iter().map(|tile| Tile { corners: tile.corners.map(moved), ..tile }));
+        places.extend(piece.places);
     }
-    sort(&mut keys);
+    parallel::sort(&mut keys);
     let mut clump_ends = Vec::new();
-    for (i, pair) in keys.windows(2).enumerate() {
+    for (i, pair) in (1..).zip(keys.windows(2)) {
         if pair[0].0 != pair[1].0 {
-            clump_ends.push(i as u32 + 1);
+            clump_ends.push(i);
         }
     }
     clump_ends.push(keys.len() as u32);
-    let tiles = parallel::map(keys.len(), |i| {
-        let (piece, tile) = keys[i].1;
-        let (_, tile) = pieces[piece as usize].tiles[tile as usize];
-        let corners = tile.corners.map(|id| if id < shared { id } else { id + before[piece as usize] });
-        Tile { corners, ..tile }
-    });
-    Tiles { places, tiles, clump_ends }
-}
-
-fn sort<K: Ord + Send>(keys: &mut [K]) {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        keys.par_sort_unstable();
-    }
-    #[cfg(not(feature = "parallel"))]
-    keys.sort_unstable();
+    let order = keys.into_iter().map(|(_, tile)| tile).collect();
+    Tiles { places, tiles, order, clump_ends }
 }
 
 #[derive(Clone, Copy)]
@@ -200,6 +205,13 @@ impl Cut {
         Corner { id, place, density }
     }
 
+    fn push(&mut self, tile: Option<(Key, Tile)>) {
+        if let Some((key, tile)) = tile {
+            self.keys.push(key);
+            self.tiles.push(tile);
+        }
+    }
+
     /// The corner so far on the way from one to another.
     fn between(&mut self, first: u32, [a, b]: [&Corner; 2], way: f64) -> Corner {
         let place = Place {
@@ -227,9 +239,9 @@ impl Cut {
             for k in 1..=slices as u32 {
                 let way = f64::from(k) / slices;
                 let next = [left, right].map(|end| self.between(first, [&tip, &end], way));
-                self.tiles.extend(tile([last[0], next[0], next[1]]));
+                self.push(tile([last[0], next[0], next[1]]));
                 if k > 1 {
-                    self.tiles.extend(tile([last[0], next[1], last[1]]));
+                    self.push(tile([last[0], next[1], last[1]]));
                 }
                 last = next;
             }
@@ -246,7 +258,7 @@ impl Cut {
     ) {
         let (start, squared) = triangle::longest_side(corners.map(|c| c.place.position));
         if squared <= longest * longest {
-            self.tiles.extend(tile(corners));
+            self.push(tile(corners));
             return;
         }
         let [from, to, apex] = [0, 1, 2].map(|turn| corners[(start + turn) % 3]);

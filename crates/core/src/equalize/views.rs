@@ -165,7 +165,7 @@ fn choices(
     let spots = spots(layout, relaxed, |site| own[site].is_some(), places, options.seed);
     parallel::map(own.len(), |site| {
         let Some(own) = own[site] else { return Vec::new() };
-        let cell = relaxed.diagram.cells[site];
+        let cell = relaxed.cells[site];
         let (centroid, distance) = (cell.moment.position / cell.mass, relaxed.sites[site].distance);
         let choice = |spot: &Spot| {
             let away = spot.place.distance_squared(centroid) / (distance * distance);
@@ -194,7 +194,7 @@ fn descend(
     let row = |site: usize, choice: usize| &rows[(starts[site] + choice) * words..][..words];
     // How many points too many each view sees, were every cell looked at as a whole.
     let mut excess = vec![0.0; words * 64];
-    let mass: f64 = relaxed.diagram.cells.iter().map(|c| c.mass).sum();
+    let mass: f64 = relaxed.cells.iter().map(|c| c.mass).sum();
     for (site, of_site) in choices.iter().enumerate() {
         if of_site.is_empty() {
             continue;
@@ -202,7 +202,7 @@ fn descend(
         for_views(row(site, 0), |view| excess[view] += 1.0);
         // The first choice is where the point stands; the others stand for the cell.
         let samples = of_site.len().max(2) - 1;
-        let share = relaxed.diagram.cells[site].mass / mass * choices.len() as f64 / samples as f64;
+        let share = relaxed.cells[site].mass / mass * choices.len() as f64 / samples as f64;
         for choice in of_site.len() - samples..of_site.len() {
             for_views(row(site, choice), |view| excess[view] -= share);
         }

@@ -1,0 +1,50 @@
+//! From cells to points: each stands on the surface, next to the centroid of its cell and on the side where it is due.
+
+use glam::DVec3;
+
+use super::holdings::Holding;
+use super::layout::Layout;
+use super::places::Spot;
+use super::relax::Relaxed;
+use super::sides::Sides;
+use crate::geometry::triangle;
+use crate::parallel;
+
+/// The place of each cell's tiles that lies nearest to its centroid, on the side where the cell's point is due; `None`
+/// for an empty cell.
+pub(super) fn settle(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>) -> Vec<Option<Spot>> {
+    let due = sides.map(|sides| sides.share_out(layout, &relaxed.holdings, relaxed.sites.len()));
+    parallel::map(relaxed.sites.len(), |site| {
+        let cell = &relaxed.cells[site];
+        if cell.mass <= 0.0 {
+            return None;
+        }
+        let centroid = cell.moment.position / cell.mass;
+        let may_stand = |holding: &&Holding| match (sides, &due) {
+            (Some(sides), Some(due)) => due[site] == Some(sides.of(layout.tiles[holding.tile as usize].face)),
+            _ => true,
+        };
+        nearest(layout, relaxed.holdings.of(site).iter().filter(may_stand), centroid)
+    })
+}
+
+/// The place on some tiles that lies nearest to a wanted one.
+fn nearest<'a>(layout: &Layout, tiles: impl Iterator<Item = &'a Holding>, wanted: DVec3) -> Option<Spot> {
+    let mut best: Option<(f64, Spot)> = None;
+    for holding in tiles {
+        let tile = &layout.tiles[holding.tile as usize];
+        let [a, b, c] = layout.corners(tile);
+        let least = best.map_or(f64::INFINITY, |(least, _)| least);
+        // A tile whose nearest corner is farther by more than its longest side has no nearer place.
+        let (_, side) = triangle::longest_side([a, b, c]);
+        if a.distance_squared(wanted) > 2.0 * (least + side) {
+            continue;
+        }
+        let place = triangle::at(a, b, c, triangle::nearest(a, b, c, wanted));
+        let distance = place.distance_squared(wanted);
+        if distance < least {
+            best = Some((distance, Spot { face: tile.face, place }));
+        }
+    }
+    best.map(|(_, spot)| spot)
+}
