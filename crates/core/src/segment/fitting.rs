@@ -1,12 +1,10 @@
 //! Beyond the paper: growth that looks at the plane. The triangle that opens the least border joins first, so that what
 //! can lie together does, and cuts stay open only where the surface's curvature keeps them apart.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use glam::DVec2;
 
-use super::planar::{Planar, Shapes};
+use super::frontier::{Cost, Frontier};
+use super::planar::{self, Planar, Shapes, ends};
 use super::{Attachment, Segment};
 use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::SurfaceMesh;
@@ -22,55 +20,69 @@ pub(super) enum Tie {
     Tightest,
 }
 
-/// What is known of a face.
+/// What is known of a face, in a byte.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum State {
-    /// So many of its neighbours are in the segment that grows now.
-    Free(u8),
-    /// In the segment that grows now.
-    Current,
-    Taken,
-}
+struct State(u8);
 
-/// What it costs to join a triangle: first the share of its sides beside the segment that opens, then the tie, as the
-/// bits of two singles. Those of floats that are not negative sort as the floats do; the smallest is best.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Cost(u64);
+impl State {
+    const FREE: Self = Self(0);
+    const JOINED: Self = Self(1 << 7);
 
-impl Cost {
-    fn new(share: f64, tie: f64) -> Self {
-        Self(u64::from((share as f32).to_bits()) << 32 | u64::from((tie as f32).to_bits()))
+    #[inline]
+    fn is_free(self) -> bool {
+        self.0 < Self::JOINED.0
     }
 
-    fn opens_nothing(self) -> bool {
-        self.0 >> 32 == 0
+    /// The sides of a free face whose neighbours have joined, a bit each.
+    #[inline]
+    fn beside(self) -> u8 {
+        self.0 & 7
     }
-}
 
-/// A side of a free triangle beside the segment, as it was seen last.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Seen {
-    cost: Cost,
-    across: HalfedgeId,
-    /// How many neighbours of the triangle were in the segment.
-    beside: u8,
+    /// The corner at which the side starts across which a free face was laid last, for a try.
+    #[inline]
+    fn tried(self) -> usize {
+        usize::from(self.0 >> 3)
+    }
+
+    /// One more neighbour has joined, across the side at `corner`, and the face is laid there for a try.
+    #[inline]
+    fn join_beside(self, corner: usize) -> Self {
+        Self(self.beside() | 1 << corner | (corner as u8) << 3)
+    }
 }
 
 /// A segment, and the length of its cuts that are open: each edge counts once.
 pub(super) struct Fitted {
-    pub(super) segment: Segment,
+    /// For each face the side across which it joined; of the first face, its first side.
+    pub(super) sides: Vec<HalfedgeId>,
     pub(super) open: f64,
 }
 
+impl Fitted {
+    pub(super) fn segment(&self) -> Segment {
+        let attachment = |(i, &side): (usize, &HalfedgeId)| Attachment {
+            face: side.face(),
+            across: (i > 0).then_some(side),
+        };
+        Segment { attachments: self.sides.iter().enumerate().map(attachment).collect() }
+    }
+}
+
 struct Fitting<'a> {
-    mesh: &'a SurfaceMesh,
     shapes: &'a Shapes,
     /// Gaps up to this stay closed.
     tolerance: f64,
     tie: Tie,
     state: Vec<State>,
-    planar: Planar<'a>,
-    frontier: BinaryHeap<Reverse<Seen>>,
+    /// Faces that have joined, and free ones beside them where they were tried last.
+    planar: Planar,
+    frontier: Frontier,
+}
+
+/// The other two, in order.
+fn other_corners(corner: usize) -> [usize; 2] {
+    [[1, 2], [0, 2], [0, 1]][corner]
 }
 
 /// A segment for each component, grown from the seeds, one in each. O(F log F).
@@ -82,20 +94,18 @@ pub(super) fn fit(
     tie: Tie,
 ) -> Vec<Fitted> {
     let mut fitting = Fitting {
-        mesh,
         shapes,
         tolerance,
         tie,
-        state: vec![State::Free(0); mesh.face_count()],
-        planar: Planar::new(shapes),
-        frontier: BinaryHeap::new(),
+        state: vec![State::FREE; shapes.face_count()],
+        planar: Planar::new(shapes.face_count()),
+        frontier: Frontier::default(),
     };
-    seeds.iter().map(|seed| fitting.grow(seed.face())).collect()
+    seeds.iter().map(|seed| fitting.grow(mesh, seed.face())).collect()
 }
 
-/// Where a free face lies when it is attached, and what that does.
+/// What it does to attach a free face.
 struct Fit {
-    corners: [DVec2; 3],
     cost: Cost,
     /// The length of its sides that open.
     open: f64,
@@ -103,71 +113,95 @@ struct Fit {
 
 impl Fitting<'_> {
     /// Grows a segment from a face until nothing is left beside it.
-    fn grow(&mut self, seed: FaceId) -> Fitted {
-        let mut fitted = Fitted { segment: Segment::default(), open: 0.0 };
-        let attachments = &mut fitted.segment.attachments;
-        let corners = self.planar.beside(self.mesh, seed, None);
-        self.join(Attachment { face: seed, across: None }, corners, attachments);
-        while let Some(Reverse(seen)) = self.frontier.pop() {
-            let face = seen.across.face();
-            let State::Free(beside) = self.state[face.index()] else { continue };
-            let attachment = Attachment { face, across: Some(seen.across) };
-            if beside == seen.beside && seen.cost.opens_nothing() {
-                let corners = self.planar.beside(self.mesh, face, attachment.across);
-                self.join(attachment, corners, attachments);
+    fn grow(&mut self, mesh: &SurfaceMesh, seed: FaceId) -> Fitted {
+        let mut fitted = Fitted { sides: vec![HalfedgeId::of(seed, 0)], open: 0.0 };
+        self.planar.lay(seed, planar::first(mesh, seed));
+        self.join(seed, 0..3);
+        while let Some((cost, across)) = self.frontier.pop() {
+            let face = across.face();
+            let state = self.state[face.index()];
+            if !state.is_free() {
                 continue;
             }
-            let fit = self.place(seen.across);
-            if fit.cost > seen.cost {
-                // Others were laid beside it since: it may have to wait.
-                self.frontier.push(Reverse(Seen { cost: fit.cost, beside, ..seen }));
-            } else {
-                fitted.open += fit.open;
-                self.join(attachment, fit.corners, attachments);
+            // What it costs stays true while nothing else is tried.
+            let known = state.tried() == across.corner();
+            if !known {
+                let Some(corners) = self.planar.beside(self.shapes, across) else { continue };
+                self.planar.lay(face, corners);
             }
-        }
-        for attachment in &*attachments {
-            self.state[attachment.face.index()] = State::Taken;
+            if !(known && cost.opens_nothing()) {
+                let fit = self.fit(across, state.beside(), self.planar.corners(face));
+                if fit.cost > cost {
+                    // Others were laid beside it since: it may have to wait.
+                    self.state[face.index()] = state.join_beside(across.corner());
+                    self.frontier.push(fit.cost, across);
+                    continue;
+                }
+                fitted.open += fit.open;
+            }
+            fitted.sides.push(across);
+            self.join(face, other_corners(across.corner()));
         }
         fitted
     }
 
-    fn join(&mut self, attachment: Attachment, corners: [DVec2; 3], attachments: &mut Vec<Attachment>) {
-        let face = attachment.face;
-        self.state[face.index()] = State::Current;
-        self.planar.lay(face, corners);
-        attachments.push(attachment);
-        for corner in 0..3 {
-            let Some(across) = self.mesh.topology().twin(HalfedgeId::of(face, corner)) else { continue };
-            let State::Free(beside) = &mut self.state[across.face().index()] else { continue };
-            *beside += 1;
-            let beside = *beside;
-            let cost = self.place(across).cost;
-            self.frontier.push(Reverse(Seen { cost, across, beside }));
+    /// A face joins where it is laid: its other sides are looked at, all three if it is the first.
+    fn join(&mut self, face: FaceId, sides: impl IntoIterator<Item = usize>) {
+        self.state[face.index()] = State::JOINED;
+        let shape = &self.shapes.of(face).0;
+        let corners = *self.planar.corners(face);
+        for corner in sides {
+            let side = &shape[corner];
+            let Some(across) = side.twin() else { continue };
+            let neighbour = across.face();
+            let state = self.state[neighbour.index()];
+            if !state.is_free() {
+                continue;
+            }
+            let state = state.join_beside(across.corner());
+            self.state[neighbour.index()] = state;
+            let laid = side.behind(across, ends(&corners, corner));
+            let cost = if state.beside().is_power_of_two() {
+                // Nothing else lies beside it, so it opens nothing.
+                Cost::new(0.0, self.tie_of(side.bend(), &laid, None))
+            } else {
+                self.fit(across, state.beside(), &laid).cost
+            };
+            self.planar.lay(neighbour, laid);
+            self.frontier.push(cost, across);
         }
     }
 
-    fn place(&self, across: HalfedgeId) -> Fit {
-        let corners = self.planar.beside(self.mesh, across.face(), Some(across));
-        let topology = self.mesh.topology();
-        let (mut open, mut closed) = (0.0, self.shapes.length(across));
-        let mut widest: Option<f64> = None;
-        for side in [across.next(), across.previous()] {
-            let Some(twin) = topology.twin(side) else { continue };
-            if self.state[twin.face().index()] == State::Current {
-                let (from, to) = (corners[side.corner()], corners[side.next().corner()]);
-                let gap = self.planar.gap(from, to, twin);
-                widest = Some(widest.map_or(gap, |w| w.max(gap)));
-                let length = self.shapes.length(side);
-                if gap > self.tolerance { open += length } else { closed += length }
-            }
-        }
-        let tie = match (self.tie, widest) {
+    fn tie_of(&self, bend: f64, corners: &[DVec2; 3], widest: Option<f64>) -> f64 {
+        match (self.tie, widest) {
             (Tie::Flattest, Some(_)) => 0.0,
-            (Tie::Flattest, None) => self.shapes.bend(across),
+            (Tie::Flattest, None) => bend,
             (Tie::Nearest, _) => (corners[0] + corners[1] + corners[2]).length(),
             (Tie::Tightest, widest) => widest.unwrap_or(0.0),
+        }
+    }
+
+    /// What it does to attach a face across a side, when it is laid there and neighbours across the sides `beside` have
+    /// joined, that side among them.
+    fn fit(&self, across: HalfedgeId, beside: u8, corners: &[DVec2; 3]) -> Fit {
+        let sides = &self.shapes.of(across.face()).0;
+        let first = &sides[across.corner()];
+        let (mut open, mut closed) = (0.0, first.length());
+        let mut widest: Option<f64> = None;
+        let mut meet = |corner: usize| {
+            let Some(twin) = sides[corner].twin() else { return };
+            let gap = self.planar.gap(ends(corners, corner), twin);
+            widest = Some(widest.map_or(gap, |w| w.max(gap)));
+            let length = sides[corner].length();
+            if gap > self.tolerance { open += length } else { closed += length }
         };
-        Fit { corners, cost: Cost::new(open / (open + closed), tie), open }
+        let others = beside & !(1 << across.corner());
+        if others.is_power_of_two() {
+            meet(others.trailing_zeros() as usize);
+        } else if others != 0 {
+            meet(across.next().corner());
+            meet(across.previous().corner());
+        }
+        Fit { cost: Cost::new(open / (open + closed), self.tie_of(first.bend(), corners, widest)), open }
     }
 }

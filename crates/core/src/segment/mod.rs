@@ -2,6 +2,7 @@
 
 mod choice;
 mod fitting;
+mod frontier;
 mod growth;
 mod merge;
 mod planar;

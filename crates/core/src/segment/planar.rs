@@ -1,100 +1,159 @@
 //! Where the triangles of segments lie in the plane, as far as growth needs to know: by face, in no common place.
 
-use glam::DVec2;
+use std::num::NonZero;
+
+use glam::{DVec2, DVec3};
 
 use super::Segmentation;
-use crate::geometry::triangle;
 use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::{Components, SurfaceMesh};
 use crate::parallel;
 
-/// A triangle seen from one of its sides, in single precision: enough to choose by, and little to look at.
+/// A side of a triangle and what lies behind it, in single precision: enough to choose by, and little to look at.
 #[derive(Clone, Copy)]
-struct Side {
+pub(super) struct Side {
     length: f32,
-    /// Where the opposite corner lies when the side goes from (0, 0) to (1, 0).
-    apex: [f32; 2],
     /// The squared distance of the unit normals on both sides of it: 0 where flat, 4 where folded back.
     bend: f32,
+    /// Where the opposite corner of the triangle behind it lies when the side, as that triangle sees it, goes from (0, 0)
+    /// to (1, 0).
+    apex: [f32; 2],
+    /// One more than the number of the side as the triangle behind it sees it.
+    twin: Option<NonZero<u32>>,
 }
 
-/// The shapes of all triangles, seen from each of their sides.
+impl Side {
+    /// A side and where it starts and ends.
+    fn of(mesh: &SurfaceMesh, side: HalfedgeId, from: DVec3, to: DVec3) -> Self {
+        let topology = mesh.topology();
+        let square = from.distance_squared(to);
+        let length = square.sqrt() as f32;
+        let Some(twin) = topology.twin(side) else {
+            return Self { length, bend: 0.0, apex: [0.0; 2], twin: None };
+        };
+        let behind = twin.face();
+        let bend = mesh.face_normal(side.face()).distance_squared(mesh.face_normal(behind)) as f32;
+        let opposite = mesh.position(topology.corners(behind)[twin.previous().corner()]);
+        let apex = apex(to, from, opposite, mesh.face_area(behind));
+        Self { length, bend, apex, twin: NonZero::new(twin.0 + 1) }
+    }
+
+    #[inline]
+    pub(super) fn length(&self) -> f64 {
+        self.length.into()
+    }
+
+    /// How much the surface bends here; 0 at the border.
+    #[inline]
+    pub(super) fn bend(&self) -> f64 {
+        self.bend.into()
+    }
+
+    /// The same edge as the triangle behind it sees it.
+    #[inline]
+    pub(super) fn twin(&self) -> Option<HalfedgeId> {
+        self.twin.map(|number| HalfedgeId(number.get() - 1))
+    }
+
+    /// The corners of the triangle behind it when this side goes from `from` to `to`.
+    #[inline]
+    pub(super) fn behind(&self, twin: HalfedgeId, (from, to): (DVec2, DVec2)) -> [DVec2; 3] {
+        // The twin runs the other way.
+        laid(twin.corner(), (to, from), self.apex)
+    }
+}
+
+/// Where the corner `c` of a triangle lies when the side `a b` goes from (0, 0) to (1, 0).
+fn apex(a: DVec3, b: DVec3, c: DVec3, area: f64) -> [f32; 2] {
+    // Faces have an area, so no side is zero.
+    let square = a.distance_squared(b);
+    [(b - a).dot(c - a) / square, 2.0 * area / square].map(|x| x as f32)
+}
+
+/// The corners of a triangle when its side at `corner` goes from `from` to `to`.
+#[inline]
+fn laid(corner: usize, (from, to): (DVec2, DVec2), apex: [f32; 2]) -> [DVec2; 3] {
+    let [x, y] = apex.map(f64::from);
+    let along = to - from;
+    let apex = from + along * x + along.perp() * y;
+    match corner {
+        0 => [from, to, apex],
+        1 => [apex, from, to],
+        _ => [to, apex, from],
+    }
+}
+
+/// The ends of the side at `corner`.
+#[inline]
+pub(super) fn ends(corners: &[DVec2; 3], corner: usize) -> (DVec2, DVec2) {
+    match corner {
+        0 => (corners[0], corners[1]),
+        1 => (corners[1], corners[2]),
+        _ => (corners[2], corners[0]),
+    }
+}
+
+/// All that growing from a triangle asks of it and of those beside it, in one line of the cache.
+#[repr(align(64))]
+pub(super) struct Shape(pub(super) [Side; 3]);
+
+/// The shapes of all triangles.
 pub(super) struct Shapes {
-    sides: Vec<[Side; 3]>,
+    of_face: Vec<Shape>,
 }
 
 impl Shapes {
     pub(super) fn new(mesh: &SurfaceMesh) -> Self {
         let of_face = |face: usize| {
             let face = FaceId::new(face);
-            let corners = mesh.triangle(face);
-            [0, 1, 2].map(|corner| {
-                let [a, b, c] = [0, 1, 2].map(|turn| corners[(corner + turn) % 3]);
-                let (length, x, y) = triangle::flatten(a, b, c);
-                let twin = mesh.topology().twin(HalfedgeId::of(face, corner));
-                let bend = twin.map_or(0.0, |twin| {
-                    mesh.face_normal(face).distance_squared(mesh.face_normal(twin.face()))
-                });
-                // Faces have an area, so no side is zero.
-                let apex = [x / length, y / length].map(|x| x as f32);
-                Side { length: length as f32, apex, bend: bend as f32 }
-            })
+            let [a, b, c] = mesh.triangle(face);
+            let side = |corner, from, to| Side::of(mesh, HalfedgeId::of(face, corner), from, to);
+            Shape([side(0, a, b), side(1, b, c), side(2, c, a)])
         };
-        Self { sides: parallel::map(mesh.face_count(), of_face) }
+        Self { of_face: parallel::map(mesh.face_count(), of_face) }
+    }
+
+    pub(super) fn face_count(&self) -> usize {
+        self.of_face.len()
     }
 
     #[inline]
-    fn side(&self, side: HalfedgeId) -> Side {
-        self.sides[side.face().index()][side.corner()]
+    pub(super) fn of(&self, face: FaceId) -> &Shape {
+        &self.of_face[face.index()]
     }
 
     #[inline]
-    pub(super) fn length(&self, side: HalfedgeId) -> f64 {
-        self.side(side).length.into()
-    }
-
-    /// How much the surface bends at a side; 0 at the border.
-    #[inline]
-    pub(super) fn bend(&self, side: HalfedgeId) -> f64 {
-        self.side(side).bend.into()
-    }
-
-    /// The corners of a face when its side `side` goes from `from` to `to`.
-    #[inline]
-    fn beside(&self, side: HalfedgeId, from: DVec2, to: DVec2) -> [DVec2; 3] {
-        let [x, y] = self.side(side).apex.map(f64::from);
-        let along = to - from;
-        let apex = from + along * x + along.perp() * y;
-        match side.corner() {
-            0 => [from, to, apex],
-            1 => [apex, from, to],
-            _ => [to, apex, from],
-        }
-    }
-
-    /// The corners of the first face of a segment.
-    fn first(&self, face: FaceId) -> [DVec2; 3] {
-        let side = HalfedgeId::of(face, 0);
-        self.beside(side, DVec2::ZERO, DVec2::new(self.length(side), 0.0))
+    pub(super) fn side(&self, side: HalfedgeId) -> &Side {
+        &self.of(side.face()).0[side.corner()]
     }
 }
 
-/// The planar corners of each face that is laid.
-pub(super) struct Planar<'a> {
-    shapes: &'a Shapes,
+/// Where each face lies that is laid.
+pub(super) struct Planar {
     corners: Vec<[DVec2; 3]>,
 }
 
-impl<'a> Planar<'a> {
-    pub(super) fn new(shapes: &'a Shapes) -> Self {
-        Self { shapes, corners: vec![[DVec2::ZERO; 3]; shapes.sides.len()] }
+/// The corners of the first face of a segment.
+pub(super) fn first(mesh: &SurfaceMesh, face: FaceId) -> [DVec2; 3] {
+    let [a, b, c] = mesh.triangle(face);
+    let length = a.distance(b) as f32;
+    laid(0, (DVec2::ZERO, DVec2::new(length.into(), 0.0)), apex(a, b, c, mesh.face_area(face)))
+}
+
+impl Planar {
+    pub(super) fn new(face_count: usize) -> Self {
+        Self { corners: vec![[DVec2::ZERO; 3]; face_count] }
     }
 
     /// The planar corners of all faces of a segmentation.
-    pub(super) fn of(mesh: &SurfaceMesh, shapes: &'a Shapes, segmentation: &Segmentation) -> Self {
-        let mut planar = Self::new(shapes);
+    pub(super) fn of(mesh: &SurfaceMesh, shapes: &Shapes, segmentation: &Segmentation) -> Self {
+        let mut planar = Self::new(shapes.face_count());
         for attachment in segmentation.segments.iter().flat_map(|s| &s.attachments) {
-            planar.lay(attachment.face, planar.beside(mesh, attachment.face, attachment.across));
+            let laid = match attachment.across.and_then(|across| planar.beside(shapes, across)) {
+                Some(laid) => laid,
+                None => first(mesh, attachment.face),
+            };
+            planar.lay(attachment.face, laid);
         }
         planar
     }
@@ -104,33 +163,27 @@ impl<'a> Planar<'a> {
         self.corners[face.index()] = corners;
     }
 
+    #[inline]
+    pub(super) fn corners(&self, face: FaceId) -> &[DVec2; 3] {
+        &self.corners[face.index()]
+    }
+
     /// The corners of a face when it is attached across its side `across` to the face behind it.
     #[inline]
-    pub(super) fn beside(&self, mesh: &SurfaceMesh, face: FaceId, across: Option<HalfedgeId>) -> [DVec2; 3] {
-        match across.and_then(|across| Some((across, mesh.topology().twin(across)?))) {
-            Some((across, twin)) => {
-                // The twin runs the other way.
-                let (to, from) = self.ends(twin);
-                self.shapes.beside(across, from, to)
-            }
-            None => self.shapes.first(face),
-        }
+    pub(super) fn beside(&self, shapes: &Shapes, across: HalfedgeId) -> Option<[DVec2; 3]> {
+        let twin = shapes.side(across).twin()?;
+        Some(shapes.side(twin).behind(across, self.ends(twin)))
     }
 
     /// The ends of a side of a face that is laid.
     #[inline]
     fn ends(&self, side: HalfedgeId) -> (DVec2, DVec2) {
-        let corners = &self.corners[side.face().index()];
-        match side.corner() {
-            0 => (corners[0], corners[1]),
-            1 => (corners[1], corners[2]),
-            _ => (corners[2], corners[0]),
-        }
+        ends(self.corners(side.face()), side.corner())
     }
 
     /// How far apart a side that goes from `from` to `to` and its twin, on a face that is laid, would lie.
     #[inline]
-    pub(super) fn gap(&self, from: DVec2, to: DVec2, twin: HalfedgeId) -> f64 {
+    pub(super) fn gap(&self, (from, to): (DVec2, DVec2), twin: HalfedgeId) -> f64 {
         let (twin_from, twin_to) = self.ends(twin);
         libm::sqrt(from.distance_squared(twin_to).max(to.distance_squared(twin_from)))
     }
@@ -139,21 +192,20 @@ impl<'a> Planar<'a> {
     /// apart than `tolerance`. Linear time.
     pub(super) fn open_lengths(
         &self,
-        mesh: &SurfaceMesh,
+        shapes: &Shapes,
         segmentation: &Segmentation,
         components: &Components,
         tolerance: f64,
     ) -> Vec<f64> {
-        let segment = segmentation.segment_of_face(mesh.face_count());
+        let segment = segmentation.segment_of_face(shapes.face_count());
         let mut open = vec![0.0; components.count];
-        for face in mesh.topology().face_ids() {
+        for face in (0..shapes.face_count()).map(FaceId::new) {
             for side in (0..3).map(|c| HalfedgeId::of(face, c)) {
-                let Some(twin) = mesh.topology().twin(side).filter(|twin| side < *twin) else { continue };
-                let (from, to) = self.ends(side);
+                let Some(twin) = shapes.side(side).twin().filter(|twin| side < *twin) else { continue };
                 if segment[face.index()] != segment[twin.face().index()]
-                    || self.gap(from, to, twin) > tolerance
+                    || self.gap(self.ends(side), twin) > tolerance
                 {
-                    open[components.of_face[face.index()] as usize] += self.shapes.length(side);
+                    open[components.of_face[face.index()] as usize] += shapes.side(side).length();
                 }
             }
         }

@@ -78,13 +78,20 @@ impl Seeds {
 fn longest_edges(mesh: &SurfaceMesh) -> Vec<LongEdge> {
     let components = mesh.topology().components();
     let mut longest: Vec<Option<LongEdge>> = vec![None; components.count];
+    let mut squares = vec![f64::NEG_INFINITY; components.count];
     for face in mesh.topology().face_ids() {
-        let best = &mut longest[components.of_face[face.index()] as usize];
-        for corner in 0..3 {
-            let halfedge = HalfedgeId::of(face, corner);
-            let edge = LongEdge { length: mesh.edge_length(halfedge), halfedge };
-            if best.is_none_or(|b| edge > b) {
-                *best = Some(edge);
+        let component = components.of_face[face.index()] as usize;
+        let [a, b, c] = mesh.triangle(face);
+        let sides = [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)];
+        for (corner, square) in sides.into_iter().enumerate() {
+            // Most are shorter than what is known, which squares tell without a root.
+            if square <= squares[component] {
+                continue;
+            }
+            let edge = LongEdge { length: square.sqrt(), halfedge: HalfedgeId::of(face, corner) };
+            if longest[component].is_none_or(|longest| edge > longest) {
+                longest[component] = Some(edge);
+                squares[component] = square;
             }
         }
     }

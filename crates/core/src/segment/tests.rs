@@ -85,11 +85,12 @@ fn fitting_reaches_all_of_a_component_and_knows_what_it_opens() {
             let fitted = fitting::fit(&mesh, &shapes, &seeds, tolerance, tie);
             assert_eq!(fitted.len(), mesh.topology().components().count);
             let known: f64 = fitted.iter().map(|f| f.open).sum();
-            let segmentation = Segmentation { segments: fitted.into_iter().map(|f| f.segment).collect() };
+            let segmentation =
+                Segmentation { segments: fitted.iter().map(fitting::Fitted::segment).collect() };
             let faces: usize = segmentation.segments.iter().map(|s| s.attachments.len()).sum();
             assert_eq!(faces, mesh.face_count());
             let laid = planar::Planar::of(&mesh, &shapes, &segmentation);
-            let open = laid.open_lengths(&mesh, &segmentation, mesh.topology().components(), tolerance);
+            let open = laid.open_lengths(&shapes, &segmentation, mesh.topology().components(), tolerance);
             assert!((known - open.iter().sum::<f64>()).abs() <= 1e-9 * mesh.diagonal(), "{shape:?} {tie:?}");
         }
     }

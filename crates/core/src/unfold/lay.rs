@@ -1,18 +1,13 @@
-//! Lays the triangles of a segment side by side in the plane, and joins what comes to lie together exactly.
+//! Lays the triangles of a segment side by side in the plane.
 
 use glam::{DMat2, DVec2};
 
 use super::FacePlace;
 use crate::geometry::triangle;
-use crate::ids::{FaceId, HalfedgeId, StripId};
+use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
-use crate::segment::Segment;
-use crate::sets::Sets;
-
-/// Two copies of a vertex nearer than this, relative to the strip's extent, are one: rounding moved them apart, not
-/// the surface's curvature.
-const COINCIDENT: f64 = 1e-11;
+use crate::segment::{Attachment, Segment};
 
 /// The triangles of a strip in the plane.
 pub(super) struct Planar {
@@ -30,88 +25,64 @@ impl Planar {
     }
 }
 
+/// How a triangle hangs on the one before it in the segment.
+struct Hung {
+    /// The side of the strip's faces that it is attached to; `None` for the first triangle.
+    on: Option<u32>,
+    /// Where its third corner lies when the side starts at the origin and runs along the x-axis, and the side's length.
+    apex: DVec2,
+    length: f64,
+}
+
+impl Hung {
+    fn new(mesh: &SurfaceMesh, attachment: &Attachment, places: &[FacePlace]) -> Self {
+        let corners = mesh.triangle(attachment.face);
+        let first = attachment.across.map_or(0, HalfedgeId::corner);
+        let (length, x, y) =
+            triangle::flatten(corners[first], corners[(first + 1) % 3], corners[(first + 2) % 3]);
+        let twin = attachment.across.and_then(|across| mesh.topology().twin(across));
+        let on = twin.map(|twin| 3 * places[twin.face().index()].index + twin.corner() as u32);
+        Self { on, apex: DVec2::new(x, y), length }
+    }
+}
+
 /// Lays the triangles along the segment's spanning tree.
 pub(super) fn lay(mesh: &SurfaceMesh, segment: &Segment, places: &[FacePlace]) -> Planar {
     let count = segment.attachments.len();
     let mut planar = Planar {
-        faces: Vec::with_capacity(count),
+        faces: segment.attachments.iter().map(|attachment| attachment.face).collect(),
         corners: Vec::with_capacity(count),
         vertices: Vec::with_capacity(count + 2),
     };
-    for attachment in &segment.attachments {
-        let face = attachment.face;
-        let space = mesh.triangle(face);
-        let twin = attachment.across.and_then(|h| mesh.topology().twin(h).map(|t| (h, t)));
-        let corners = if let Some((across, twin)) = twin {
-            // The twin runs the other way.
-            let (to, from) = planar.ends(3 * places[twin.face().index()].index + twin.corner() as u32);
-            let first = across.corner();
-            let (_, x, y) = triangle::flatten(space[first], space[(first + 1) % 3], space[(first + 2) % 3]);
-            let a = planar.vertices[from as usize];
-            let along = (planar.vertices[to as usize] - a).try_normalize().unwrap_or(DVec2::X);
-            let apex = planar.vertices.len() as u32;
-            planar.vertices.push(a + along * x + along.perp() * y);
-            let mut corners = [0; 3];
-            corners[first] = from;
-            corners[(first + 1) % 3] = to;
-            corners[(first + 2) % 3] = apex;
-            corners
-        } else {
-            let (length, x, y) = triangle::flatten(space[0], space[1], space[2]);
-            let base = planar.vertices.len() as u32;
-            planar.vertices.extend([DVec2::ZERO, DVec2::new(length, 0.0), DVec2::new(x, y)]);
-            [base, base + 1, base + 2]
-        };
-        planar.faces.push(face);
-        planar.corners.push(corners);
+    // Shapes do not depend on each other, only places do: pieces that are small enough to stay in the cache.
+    const PIECE: usize = 1 << 14;
+    for attachments in segment.attachments.chunks(PIECE) {
+        let hung = parallel::map(attachments.len(), |i| Hung::new(mesh, &attachments[i], places));
+        for (attachment, Hung { on, apex, length }) in attachments.iter().zip(hung) {
+            let corners = match on {
+                Some(on) => {
+                    // The side runs the other way.
+                    let (to, from) = planar.ends(on);
+                    let a = planar.vertices[from as usize];
+                    let along = (planar.vertices[to as usize] - a).try_normalize().unwrap_or(DVec2::X);
+                    let third = planar.vertices.len() as u32;
+                    planar.vertices.push(a + along * apex.x + along.perp() * apex.y);
+                    match attachment.across.map(HalfedgeId::corner) {
+                        Some(1) => [third, from, to],
+                        Some(2) => [to, third, from],
+                        _ => [from, to, third],
+                    }
+                }
+                None => {
+                    let base = planar.vertices.len() as u32;
+                    planar.vertices.extend([DVec2::ZERO, DVec2::new(length, 0.0), apex]);
+                    [base, base + 1, base + 2]
+                }
+            };
+            planar.corners.push(corners);
+        }
     }
     planar
-}
-
-/// For each side of the strip's faces (side `c` of its `i`-th face is `3 i + c`) the same edge as its neighbour in the
-/// strip sees it; `None` where the surface or the strip ends.
-pub(super) fn twins(
-    mesh: &SurfaceMesh,
-    strip: StripId,
-    places: &[FacePlace],
-    faces: &[FaceId],
-) -> Vec<Option<u32>> {
-    let side = |face, corner| {
-        let twin = mesh.topology().twin(HalfedgeId::of(face, corner))?;
-        let place = places[twin.face().index()];
-        (place.strip == strip).then(|| 3 * place.index + twin.corner() as u32)
-    };
-    faces.iter().flat_map(|&face| [0, 1, 2].map(|corner| side(face, corner))).collect()
-}
-
-/// Joins copies of a vertex on both sides of a cut that lie together exactly (up to rounding), so that no gap or
-/// overlap of rounding's width can lose or double a point.
-pub(super) fn close_seams(planar: &mut Planar, twins: &[Option<u32>]) {
-    let extent = planar.vertices.iter().fold(0.0_f64, |m, v| m.max(v.abs().max_element()));
-    let tolerance = COINCIDENT * extent;
-    let mut joined = Sets::new(planar.vertices.len());
-    let mut any = false;
-    for (side, twin) in (0u32..).zip(twins) {
-        let Some(twin) = twin.filter(|twin| side < *twin) else { continue };
-        let (from, to) = planar.ends(side);
-        // The twin runs the other way.
-        let (twin_to, twin_from) = planar.ends(twin);
-        for (a, b) in [(from, twin_from), (to, twin_to)] {
-            if a == b {
-                continue;
-            }
-            let (a, b) = (joined.root(a), joined.root(b));
-            if a != b && planar.vertices[a as usize].distance(planar.vertices[b as usize]) <= tolerance {
-                joined.join(a, b);
-                any = true;
-            }
-        }
-    }
-    if any {
-        for v in planar.corners.iter_mut().flatten() {
-            *v = joined.root(*v);
-        }
-    }
 }
 
 /// Turns the strip so that the square around it is small and moves it so that the box around it starts at (0, 0).

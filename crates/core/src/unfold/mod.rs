@@ -2,6 +2,7 @@
 
 mod border;
 mod lay;
+mod seams;
 
 use std::ops::Range;
 
@@ -12,6 +13,7 @@ use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::sample::SurfacePoint;
 use crate::segment::Segmentation;
+use seams::Twins;
 
 /// What lies on the other side of a border edge of a strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,11 +144,12 @@ pub fn unfold(mesh: &SurfaceMesh, segmentation: &Segmentation) -> Strips {
         }
     }
     let strips = parallel::map(segmentation.segments.len(), |s| {
-        let mut planar = lay::lay(mesh, &segmentation.segments[s], &places);
-        let twins = lay::twins(mesh, StripId::new(s), &places, &planar.faces);
-        lay::close_seams(&mut planar, &twins);
+        let (segment, strip) = (&segmentation.segments[s], StripId::new(s));
+        let (mut planar, twins) =
+            parallel::join(|| lay::lay(mesh, segment, &places), || Twins::new(mesh, strip, &places, segment));
+        let in_border = seams::close(&mut planar, &twins);
         lay::settle(&mut planar);
-        border::strip(mesh, StripId::new(s), &places, planar, &twins)
+        border::strip(mesh, strip, &places, planar, &twins, in_border)
     });
     Strips { strips, places }
 }
