@@ -15,7 +15,9 @@ use crate::args::{
     SequenceArg, SequenceArgs, WrapOutputArgs,
 };
 use crate::exit::{Failure, Outcome};
+use crate::input::Input;
 use crate::output::{Destination, Targets};
+use crate::points;
 use crate::weights;
 
 /// The points of a `wrap` run: where they go, in which format.
@@ -74,6 +76,24 @@ impl WrapOutputs {
         };
         targets.check(Some(input))?;
         Ok(outputs)
+    }
+}
+
+/// How many of the points a run holds at a time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Held {
+    /// A block: they are written as they are made.
+    Block,
+    /// All of them.
+    All,
+}
+
+impl WrapOutputs {
+    /// What the outputs need of the points of a mesh.
+    pub(crate) fn held(&self, input: &Input) -> Held {
+        let is_whole = |points: &PointOutput| !points::in_blocks(input, points.format, &points.carried);
+        let looked_at = self.strips.is_some() || self.preview.is_some() || self.quality;
+        if looked_at || self.points.as_ref().is_some_and(is_whole) { Held::All } else { Held::Block }
     }
 }
 
@@ -206,9 +226,14 @@ pub(crate) fn wrap_options(segment: &SegmentArgs, points: &SequenceArgs) -> Outc
     })
 }
 
-/// Refuses more points than fit in the memory allowed, by what runs took: 1,000,000 and 4,000,000 points wrapped, and
-/// 300,000 equalized.
-pub(crate) fn points_fit(options: &Options, area: f64, reading: &ReadingArgs) -> anyhow::Result<()> {
+/// Refuses more points than fit in the memory allowed, by what runs took: 1,000,000 to 10,000,000 points wrapped with each
+/// sequence, and 300,000 equalized.
+pub(crate) fn points_fit(
+    options: &Options,
+    held: Held,
+    area: f64,
+    reading: &ReadingArgs,
+) -> anyhow::Result<()> {
     let most = reading.memory();
     let n = match options.request {
         Request::Count(n) => n as f64,
@@ -217,9 +242,14 @@ pub(crate) fn points_fit(options: &Options, area: f64, reading: &ReadingArgs) ->
         // Only wrapping tells how many.
         Request::Irregularity(_) => return Ok(()),
     };
-    let (each, advice) = match options.equalize {
-        Some(_) => (7_200.0, ", or leave equalizing out (--no-equalize), which takes most"),
-        None => (500.0, ""),
+    let (each, advice) = match (options.equalize, held, options.sequence) {
+        (Some(_), _, _) => (7_200.0, ", or leave equalizing out (--no-equalize), which takes most"),
+        (None, Held::All, _) => {
+            (500.0, ", or write .ply, .xyz, .csv, .npy or .json alone, without cell areas")
+        }
+        (None, Held::Block, Sequence::Hammersley { .. }) => (60.0, ""),
+        // All their points on the domain are listed.
+        (None, Held::Block, _) => (300.0, ", or take --sequence hammersley"),
     };
     if n * each <= most as f64 {
         return Ok(());

@@ -15,6 +15,7 @@ mod points;
 mod progress;
 mod quality;
 mod report;
+mod stop;
 mod table;
 mod weights;
 

@@ -4,38 +4,160 @@ use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, anyhow};
-use ldwrap::io::points::{Attribute, PointFormat, PointRow, gather, read_points, write_fields, write_points};
+use ldwrap::attributes::MeshAttributes;
+use ldwrap::io::points::{Attribute, Gatherer, PointFormat, PointWriter, read_points, write_fields};
+use ldwrap::pipeline::Block;
 use ldwrap::spatial::nearest;
 use ldwrap::{Progress, Sample, SurfaceMesh, SurfacePoint};
 use serde::Serialize;
 
 use crate::input::Input;
-use crate::job::{Carried, PointOutput};
+use crate::job::{Carried, Held};
+use crate::output::Staged;
+use crate::weights::Ground;
 
 /// Points nearer to the surface than this share of the mesh's size are on it: rounding to single precision.
 const ON_SURFACE: f64 = 1e-6;
 
-/// Samples as a file, with what they carry.
-pub(crate) fn bytes(input: &Input, samples: &[Sample], wanted: &PointOutput) -> anyhow::Result<Vec<u8>> {
-    let Input { name, mesh, attributes, .. } = input;
-    let mut bytes = Vec::new();
-    let carried = match &wanted.carried {
-        Carried::Usual => {
-            let rows: Vec<PointRow> = samples.iter().map(|sample| PointRow::new(mesh, sample)).collect();
-            write_points(wanted.format, &rows, &mut bytes)?;
-            return Ok(bytes);
-        }
-        Carried::Named(names) => names.clone(),
-        Carried::All => {
-            let numbers = attributes.numbers.iter().map(|(name, _)| Attribute::Number(name.clone()));
-            let all = Attribute::FIXED.into_iter().chain(numbers.filter(is_other));
-            all.filter(|one| one.is_in(attributes) && one.fits(wanted.format)).collect()
-        }
+/// What points carry when nothing was asked for, where the format has room.
+const USUAL: [Attribute; 6] = [
+    Attribute::FlatNormal,
+    Attribute::Face,
+    Attribute::Barycentric,
+    Attribute::Strip,
+    Attribute::Place,
+    Attribute::Origin,
+];
+
+/// What points in a format carry besides their position.
+fn attributes(attributes: &MeshAttributes, format: PointFormat, carried: &Carried) -> Vec<Attribute> {
+    let all = || {
+        let numbers = attributes.numbers.iter().map(|(name, _)| Attribute::Number(name.clone()));
+        Attribute::FIXED.into_iter().chain(numbers.filter(is_other))
     };
-    let fields = gather(mesh, attributes, samples, &carried)
-        .map_err(|error| anyhow!("{name}: {error}: leave it out of --attributes"))?;
-    write_fields(wanted.format, &fields, &mut bytes)?;
-    Ok(bytes)
+    match carried {
+        // Positions alone.
+        Carried::Usual if format == PointFormat::Xyz => Vec::new(),
+        Carried::Usual => USUAL.into_iter().filter(|one| one.fits(format)).collect(),
+        Carried::Named(names) => names.clone(),
+        Carried::All => all().filter(|one| one.is_in(attributes) && one.fits(format)).collect(),
+    }
+}
+
+/// Whether points can be written block by block.
+pub(crate) fn in_blocks(input: &Input, format: PointFormat, carried: &Carried) -> bool {
+    let attributes = attributes(&input.attributes, format, carried);
+    format.takes_blocks() && !attributes.iter().any(Attribute::is_of_all_points)
+}
+
+/// Points on their way to a file.
+pub(crate) struct PointFile<'a> {
+    format: PointFormat,
+    in_blocks: bool,
+    gatherer: Gatherer<'a>,
+    begin: &'a dyn Fn() -> anyhow::Result<Staged>,
+    writer: Option<PointWriter<Staged>>,
+}
+
+impl<'a> PointFile<'a> {
+    /// A file that `begin` will begin when there are points of `input`.
+    pub(crate) fn new(
+        input: &'a Input,
+        format: PointFormat,
+        carried: &Carried,
+        begin: &'a dyn Fn() -> anyhow::Result<Staged>,
+    ) -> anyhow::Result<Self> {
+        let Input { name, mesh, attributes: known, .. } = input;
+        let wanted = attributes(known, format, carried);
+        let gatherer = Gatherer::new(mesh, known, &wanted)
+            .map_err(|error| anyhow!("{name}: {error}: leave it out of --attributes"))?;
+        Ok(Self { format, in_blocks: in_blocks(input, format, carried), gatherer, begin, writer: None })
+    }
+
+    /// Writes some of `count` points.
+    fn write(&mut self, samples: &[Sample], count: usize) -> anyhow::Result<()> {
+        let fields = self.gatherer.fields(samples);
+        let mut writer = match self.writer.take() {
+            Some(writer) => writer,
+            None => {
+                let staged = (self.begin)()?;
+                let failed = staged.failed();
+                PointWriter::new(self.format, &fields, count, staged).context(failed)?
+            }
+        };
+        writer.write(&fields).with_context(|| writer.get_ref().failed())?;
+        self.writer = Some(writer);
+        Ok(())
+    }
+
+    /// The file, complete.
+    fn finish(self) -> anyhow::Result<Option<Staged>> {
+        let Some(writer) = self.writer else { return Ok(None) };
+        let failed = writer.get_ref().failed();
+        writer.finish().map(Some).context(failed)
+    }
+
+    /// The file of all points at once.
+    fn whole(self, samples: &[Sample]) -> anyhow::Result<Staged> {
+        let mut staged = (self.begin)()?;
+        let failed = staged.failed();
+        write_fields(self.format, &self.gatherer.fields(samples), &mut staged).context(failed)?;
+        Ok(staged)
+    }
+}
+
+/// Takes the points of a run: writes them as they come and keeps them, as far as that is wanted.
+pub(crate) struct Taking<'a> {
+    ground: &'a Ground,
+    file: Option<PointFile<'a>>,
+    kept: Option<Vec<Sample>>,
+}
+
+/// What is left of the points of a run.
+pub(crate) struct Taken {
+    /// Their file, complete.
+    pub(crate) file: Option<Staged>,
+    /// All of them, if something looks at all; on the ground that they were placed on.
+    pub(crate) samples: Option<Vec<Sample>>,
+}
+
+impl<'a> Taking<'a> {
+    /// Nothing was taken yet; `held` says whether something besides the file looks at all points.
+    pub(crate) fn new(ground: &'a Ground, file: Option<PointFile<'a>>, held: Held) -> Self {
+        let keeps = held == Held::All || file.as_ref().is_some_and(|file| !file.in_blocks);
+        Self { ground, file, kept: keeps.then(Vec::new) }
+    }
+
+    /// Takes a block; `progress` hears `write`.
+    pub(crate) fn take(&mut self, block: Block<'_>, progress: &dyn Progress) -> anyhow::Result<()> {
+        let Block { samples, count } = block;
+        if let Some(file) = self.file.as_mut().filter(|file| file.in_blocks) {
+            if file.writer.is_none() {
+                progress.begin("write", count as u64);
+            }
+            file.write(&self.ground.lifted(samples), count)?;
+            progress.advance(samples.len() as u64);
+        }
+        if let Some(kept) = &mut self.kept {
+            kept.reserve_exact(count - kept.len());
+            kept.extend_from_slice(samples);
+        }
+        Ok(())
+    }
+
+    /// All blocks were taken.
+    pub(crate) fn finish(self, progress: &dyn Progress) -> anyhow::Result<Taken> {
+        let Self { ground, file, kept } = self;
+        let file = match (file, &kept) {
+            (Some(file), Some(kept)) if !file.in_blocks => {
+                progress.begin("write", 1);
+                Some(file.whole(&ground.lifted(kept))?)
+            }
+            (Some(file), _) => file.finish()?,
+            (None, _) => None,
+        };
+        Ok(Taken { file, samples: kept })
+    }
 }
 
 /// Whether a number of the file is none of those that attributes are made of.

@@ -3,7 +3,7 @@
 use ldwrap::density::Density;
 use ldwrap::equalize::{EqualizeOptions, EqualizeReport};
 use ldwrap::irregularity::Irregularity;
-use ldwrap::pipeline::{Options, Request, Run, SampleOrder, Selection};
+use ldwrap::pipeline::{Options, Request, SampleOrder, Selection, Streamed};
 use ldwrap::segment::GrowthOrder;
 use ldwrap::sequence::Sequence;
 use ldwrap::unfold::Strip;
@@ -81,7 +81,7 @@ impl<'a> Report<'a> {
         mesh: MeshReport<'a>,
         options: &Options,
         density: &Density,
-        run: &Run,
+        run: &Streamed,
         irregularity: Irregularity,
         quality: Option<Quality>,
         seconds: Seconds,
@@ -106,7 +106,7 @@ impl<'a> Report<'a> {
             strips: run.strips.strips.iter().map(|strip| strip_report(strip, run.tolerance)).collect(),
             open_border: open_border(area, run),
             points: PointsReport {
-                count: run.samples.len(),
+                count: run.count,
                 d_m: run.d_m,
                 projected: run.correction.projected,
                 removed: run.correction.removed,
@@ -135,7 +135,7 @@ impl<'a> MeshReport<'a> {
 }
 
 /// The length of the border that stays open at a run's d_m, both sides of each cut, over the root of the area.
-pub(crate) fn open_border(area: f64, run: &Run) -> f64 {
+pub(crate) fn open_border(area: f64, run: &Streamed) -> f64 {
     run.strips.open_border_length(run.tolerance) / area.sqrt()
 }
 

@@ -1,5 +1,6 @@
 //! Weights of a mesh from a text file, or from what the mesh file has itself.
 
+use std::borrow::Cow;
 use std::fs;
 use std::path::Path;
 
@@ -9,7 +10,7 @@ use ldwrap::attributes::Places;
 use ldwrap::density::Density;
 use ldwrap::io::Detail;
 use ldwrap::io::points::Attribute;
-use ldwrap::pipeline::{Options, Request, Run, run_weighted};
+use ldwrap::pipeline::{Block, Options, Request, StreamError, Streamed, run_into};
 use ldwrap::refine::{Refined, refine};
 use ldwrap::{Progress, Sample, SurfaceMesh, SurfacePoint, quota};
 
@@ -37,25 +38,40 @@ impl Ground {
         self.refined.as_ref().map_or(&self.input.mesh, Refined::mesh)
     }
 
-    /// Runs all stages.
-    pub(crate) fn run(&self, progress: &dyn Progress) -> anyhow::Result<Run> {
-        let run =
-            match &self.counts {
-                Some(counts) => quota::run(self.mesh(), &self.density, counts, &self.options, progress)
-                    .map_err(Into::into),
-                None => run_weighted(self.mesh(), &self.density, &self.options, progress)
-                    .map_err(anyhow::Error::from),
-            };
-        run.with_context(|| self.input.name.clone())
+    /// Runs all stages and hands the points on to `take`; see [`run_into`].
+    pub(crate) fn run_into(
+        &self,
+        progress: &dyn Progress,
+        mut take: impl FnMut(Block<'_>) -> anyhow::Result<()>,
+    ) -> anyhow::Result<Streamed> {
+        /// Points in a block of those that are there at once.
+        const BLOCK: usize = 1 << 17;
+        let (mesh, density, options) = (self.mesh(), &self.density, &self.options);
+        let name = || self.input.name.clone();
+        match &self.counts {
+            Some(counts) => {
+                let run = quota::run(mesh, density, counts, options, progress).with_context(name)?;
+                let (streamed, samples) = run.split();
+                let count = samples.len();
+                samples.chunks(BLOCK).try_for_each(|samples| take(Block { samples, count }))?;
+                Ok(streamed)
+            }
+            None => run_into(mesh, density, options, progress, take).map_err(|error| match error {
+                StreamError::Options(error) => anyhow::Error::from(error).context(name()),
+                StreamError::Sink(error) => error,
+            }),
+        }
     }
 
     /// Samples on it as samples on the mesh of the input.
-    pub(crate) fn lifted(&self, samples: &[Sample]) -> Vec<Sample> {
-        let lift = |sample: &Sample| match &self.refined {
-            Some(refined) => Sample { point: refined.lift(&sample.point), ..*sample },
-            None => *sample,
-        };
-        samples.iter().map(lift).collect()
+    pub(crate) fn lifted<'a>(&self, samples: &'a [Sample]) -> Cow<'a, [Sample]> {
+        match &self.refined {
+            Some(refined) => {
+                let lift = |s: &Sample| Sample { point: refined.lift(&s.point), ..*s };
+                Cow::Owned(samples.iter().map(lift).collect())
+            }
+            None => Cow::Borrowed(samples),
+        }
     }
 }
 

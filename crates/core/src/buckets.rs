@@ -30,16 +30,26 @@ impl<T: Copy + Send + Sync> Buckets<T> {
         count: usize,
         bucket: impl Fn(&T) -> usize + Sync + Send,
     ) -> Self {
-        let sorted = parallel::map(pieces, |piece| {
-            let items = sorted(make(piece), &bucket);
-            let mut runs = Vec::new();
-            let mut start = 0;
-            for run in items.chunk_by(|a, b| bucket(a) == bucket(b)) {
-                runs.push((bucket(&run[0]), start as u32..(start + run.len()) as u32));
-                start += run.len();
+        let sorted = parallel::map(pieces, |piece| with_runs(sorted(make(piece), &bucket), &bucket));
+        Self::of_sorted(sorted, count)
+    }
+
+    /// As [`new`](Self::new), of pieces that are there.
+    pub(crate) fn of_pieces(
+        mut pieces: Vec<Vec<T>>,
+        count: usize,
+        bucket: impl Fn(&T) -> usize + Sync + Send,
+    ) -> Self {
+        parallel::change_chunks(&mut pieces, 1, |_, piece| {
+            for items in piece {
+                *items = sorted(std::mem::take(items), &bucket);
             }
-            (items, runs)
         });
+        let sorted = pieces.into_iter().map(|items| with_runs(items, &bucket)).collect();
+        Self::of_sorted(sorted, count)
+    }
+
+    fn of_sorted(sorted: Vec<Sorted<T>>, count: usize) -> Self {
         let mut starts = vec![0u32; count + 1];
         for (bucket, _) in sorted.iter().flat_map(|(_, runs)| runs) {
             starts[bucket + 1] += 1;
@@ -84,6 +94,19 @@ impl<T: Copy + Send + Sync> Buckets<T> {
         })
         .concat()
     }
+}
+
+/// Items in the order of their buckets, and each bucket with its run of them.
+type Sorted<T> = (Vec<T>, Vec<(usize, Range<u32>)>);
+
+fn with_runs<T>(items: Vec<T>, bucket: impl Fn(&T) -> usize) -> Sorted<T> {
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for run in items.chunk_by(|a, b| bucket(a) == bucket(b)) {
+        runs.push((bucket(&run[0]), start as u32..(start + run.len()) as u32));
+        start += run.len();
+    }
+    (items, runs)
 }
 
 /// Items by their buckets, those of one in the order they had.

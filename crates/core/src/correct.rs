@@ -4,11 +4,14 @@
 //! add up to at most the tolerance. Not covered by the strip, it lies in an interstice and is projected onto the
 //! nearer copy; covered more than once, it lies in an overlap and of its surface points beside that edge one is kept.
 
+mod order;
 mod seams;
+
+use std::borrow::Cow;
+use std::convert::Infallible;
 
 use glam::DVec2;
 
-use crate::buckets::Buckets;
 use crate::domain::{DomainPoints, PlanarDomain};
 use crate::geometry::plane;
 use crate::ids::{FaceId, HalfedgeId, StripId};
@@ -18,6 +21,8 @@ use crate::sample::{Origin, Sample, SurfacePoint};
 use crate::unfold::Strips;
 use crate::wrap::Wrapping;
 
+pub(crate) use order::{Keep, Pick, Picks};
+
 /// What the correction did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -26,6 +31,22 @@ pub struct Correction {
     pub projected: usize,
     /// Copies in thin overlaps that were removed.
     pub removed: usize,
+}
+
+impl Correction {
+    /// Counts what was done to these too.
+    pub(crate) fn add(&mut self, corrected: &[&Corrected]) {
+        let counted = parallel::map_chunks(corrected.len(), 1 << 16, |range| {
+            corrected[range].iter().fold((0, 0), |(projected, removed), c| {
+                let is_projected = usize::from(c.sample.origin == Origin::Projected);
+                (projected + is_projected, removed + c.copies_removed as usize)
+            })
+        });
+        for (projected, removed) in counted {
+            self.projected += projected;
+            self.removed += removed;
+        }
+    }
 }
 
 /// A sample with the number of the domain point that it came from.
@@ -51,14 +72,26 @@ pub fn correct(
     wrapping: Wrapping,
     tolerance: f64,
 ) -> (Vec<Corrected>, Correction) {
-    Mended::new(mesh, strips, domain, points, wrapping, tolerance).in_order(mesh)
+    let mended = Mended::new(mesh, strips, domain, Cow::Borrowed(points), wrapping, tolerance);
+    let picks = Picks::new(&mended, mended.pick(|on, nth| !on.is_removed(nth)));
+    let mut corrected = Vec::with_capacity(picks.count());
+    let mut correction = Correction::default();
+    let blocks = picks.blocks(&mended, Keep::All, |block| {
+        correction.add(block);
+        corrected.extend(block.iter().map(|c| **c));
+        Ok::<(), Infallible>(())
+    });
+    match blocks {
+        Ok(()) => (corrected, correction),
+        Err(never) => match never {},
+    }
 }
 
 /// What was caught and what the correction does to it, face by face; samples are made when they are asked for.
 pub(crate) struct Mended<'a> {
     strips: &'a Strips,
     domain: &'a PlanarDomain,
-    points: &'a DomainPoints,
+    points: Cow<'a, DomainPoints>,
     wrapping: Wrapping,
     mends: Mends,
 }
@@ -96,11 +129,11 @@ impl<'a> Mended<'a> {
         mesh: &SurfaceMesh,
         strips: &'a Strips,
         domain: &'a PlanarDomain,
-        points: &'a DomainPoints,
+        points: Cow<'a, DomainPoints>,
         wrapping: Wrapping,
         tolerance: f64,
     ) -> Self {
-        let mends = seams::mend(mesh, strips, domain, points, &wrapping, tolerance);
+        let mends = seams::mend(mesh, strips, domain, &points, &wrapping, tolerance);
         Self { strips, domain, points, wrapping, mends }
     }
 
@@ -113,7 +146,7 @@ impl<'a> Mended<'a> {
     pub(crate) fn on(&self, face: FaceId) -> OnFace<'_> {
         let place = self.strips.places[face.index()];
         OnFace {
-            points: self.points,
+            points: &self.points,
             face,
             strip: place.strip,
             corners: self.domain.triangle(self.strips, face),
@@ -124,50 +157,26 @@ impl<'a> Mended<'a> {
         }
     }
 
-    /// All samples, ordered by the number of their domain point, then by strip and face.
-    pub(crate) fn in_order(&self, mesh: &SurfaceMesh) -> (Vec<Corrected>, Correction) {
+    /// Which samples stay, in pieces of faces; `stays` hears what is on a face and which of it.
+    pub(crate) fn pick(&self, stays: impl Fn(&OnFace<'_>, usize) -> bool + Sync + Send) -> Vec<Vec<Pick>> {
         const SAMPLES: usize = 8192;
-        let faces = mesh.face_count();
+        let faces = self.strips.places.len();
         let size = (SAMPLES * faces / self.count().max(1)).clamp(1, SAMPLES);
-        let piece = |piece: usize| {
-            (piece * size..((piece + 1) * size).min(faces))
-                .flat_map(|face| self.on(FaceId::new(face)).into_samples())
-                .collect()
-        };
-        in_order(faces.div_ceil(size), piece, self.points.end(), |c| *c)
+        parallel::map_chunks(faces, size, |range| {
+            let mut picked = Vec::new();
+            for face in range.map(FaceId::new) {
+                let on = self.on(face);
+                let staying = (0..on.len()).filter(|&nth| stays(&on, nth));
+                picked.extend(staying.map(|nth| Pick { face, nth: nth as u32 }));
+            }
+            picked
+        })
     }
 
     /// Above the number of every point.
     pub(crate) fn end(&self) -> u64 {
         self.points.end()
     }
-}
-
-/// Puts the samples that are made in pieces in order: by the number of their domain point, then by strip and face.
-/// `end` is above all numbers. With what the correction did to them. Linear time, but for sorting within some thousands.
-pub(crate) fn in_order<R: Send>(
-    pieces: usize,
-    make: impl Fn(usize) -> Vec<Corrected> + Sync + Send,
-    end: u64,
-    take: impl Fn(&Corrected) -> R + Sync + Send,
-) -> (Vec<R>, Correction) {
-    /// Buckets of this many numbers, which hold some thousands of samples, as long as there are not too many of them.
-    const NUMBERS: u32 = 14;
-    const MOST: u32 = 12;
-    let shift = (u64::BITS - end.leading_zeros()).saturating_sub(MOST).max(NUMBERS);
-    let buckets = Buckets::new(pieces, make, ((end >> shift) + 1) as usize, |c| (c.index >> shift) as usize);
-    let order = buckets.by_key(|c| (c.index, c.sample.strip, c.sample.point.face));
-    let counted = parallel::map_chunks(order.len(), 1 << 16, |range| {
-        order[range].iter().fold(Correction::default(), |sum, c| Correction {
-            projected: sum.projected + usize::from(c.sample.origin == Origin::Projected),
-            removed: sum.removed + c.copies_removed as usize,
-        })
-    });
-    let correction = counted.iter().fold(Correction::default(), |sum, c| Correction {
-        projected: sum.projected + c.projected,
-        removed: sum.removed + c.removed,
-    });
-    (parallel::map(order.len(), |i| take(order[i])), correction)
 }
 
 /// The samples of one face.
@@ -189,13 +198,30 @@ impl<'a> OnFace<'a> {
         self.slots.len() + self.projected.len()
     }
 
+    /// Whether the sample at a place was removed.
+    #[inline]
+    pub(crate) fn is_removed(&self, at: usize) -> bool {
+        let slot = self.slots.get(at);
+        slot.is_some_and(|&slot| self.removed.iter().any(|r| r.1 == slot))
+    }
+
+    /// Which point of the sequence is at a place; `None` beyond the last.
+    #[inline]
+    fn index(&self, at: usize) -> Option<u64> {
+        let slot = match self.slots.get(at) {
+            Some(&slot) => slot,
+            None => self.projected.get(at - self.slots.len())?.slot,
+        };
+        Some(self.points.at(slot).1)
+    }
+
     /// The sample at a place; `None` where one was removed.
     #[inline]
     pub(crate) fn sample(&self, at: usize) -> Option<Corrected> {
         let Some(&slot) = self.slots.get(at) else {
             return self.projected.get(at - self.slots.len()).map(|p| self.projection(p));
         };
-        if self.removed.iter().any(|r| r.1 == slot) {
+        if self.is_removed(at) {
             return None;
         }
         let (place, index) = self.points.at(slot);
@@ -214,9 +240,5 @@ impl<'a> OnFace<'a> {
         let point = SurfacePoint { face: self.face, barycentric };
         let sample = Sample { point, strip: self.strip, place, origin: Origin::Projected };
         Corrected { index: self.points.at(slot).1, copies_removed: 0, sample }
-    }
-
-    fn into_samples(self) -> impl Iterator<Item = Corrected> + 'a {
-        (0..self.len()).filter_map(move |at| self.sample(at))
     }
 }

@@ -8,7 +8,7 @@ use crate::irregularity::{Irregularity, irregularity};
 use crate::mesh::SurfaceMesh;
 use crate::progress::Progress;
 use crate::progressive::progressive;
-use crate::request::{Scattered, Scattering};
+use crate::request::{Points, Scattered, Scattering};
 use crate::sample::{Origin, Sample};
 use crate::segment::{SegmentOptions, Segmentation, segment, segment_for};
 use crate::sequence::{self, Sequence, SequenceError};
@@ -133,6 +133,66 @@ impl Run {
     pub fn irregularity(&self) -> Irregularity {
         irregularity(&self.strips, self.d_m, self.tolerance)
     }
+
+    /// The points apart from all else.
+    pub fn split(self) -> (Streamed, Vec<Sample>) {
+        let Self { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples } = self;
+        let count = samples.len();
+        (Streamed { segmentation, strips, domain, correction, equalize, d_m, tolerance, count }, samples)
+    }
+}
+
+/// The value of every stage but the points, which were handed on; the fields are those of [`Run`].
+#[derive(Clone, Debug)]
+pub struct Streamed {
+    /// Which triangles form a segment.
+    pub segmentation: Segmentation,
+    /// The segments in the plane.
+    pub strips: Strips,
+    /// Where the strips lie.
+    pub domain: PlanarDomain,
+    /// What wrapping and the correction did.
+    pub correction: Correction,
+    /// What equalizing did, if it was asked for.
+    pub equalize: Option<EqualizeReport>,
+    /// The mean distance between neighbours.
+    pub d_m: f64,
+    /// Cuts whose gap is at most this were closed.
+    pub tolerance: f64,
+    /// How many points there were.
+    pub count: usize,
+}
+
+impl Streamed {
+    /// As [`Run::irregularity`].
+    pub fn irregularity(&self) -> Irregularity {
+        irregularity(&self.strips, self.d_m, self.tolerance)
+    }
+
+    fn with(self, samples: Vec<Sample>) -> Run {
+        let Self { segmentation, strips, domain, correction, equalize, d_m, tolerance, count: _ } = self;
+        Run { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples }
+    }
+}
+
+/// Some of the points of a request, which follow on those of the block before.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'a> {
+    /// The points of this block.
+    pub samples: &'a [Sample],
+    /// How many points there are in all blocks.
+    pub count: usize,
+}
+
+/// Why points were not all handed on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StreamError<E> {
+    /// There are none, or the caller cancelled.
+    #[error(transparent)]
+    Options(#[from] OptionsError),
+    /// Whoever takes them refused a block.
+    #[error("{0}")]
+    Sink(E),
 }
 
 /// Options that cannot be met.
@@ -206,6 +266,71 @@ pub fn run_weighted(
     options: &Options,
     progress: &dyn Progress,
 ) -> Result<Run, OptionsError> {
+    let made: Result<_, OptionsError> =
+        stages(mesh, density, options, progress, |points| Ok(points.into_samples()));
+    let (streamed, samples) = made?;
+    Ok(streamed.with(samples))
+}
+
+/// As [`run_weighted`], but the points are handed on in blocks of some 100,000, in their order, as they are made: never are
+/// all of them there, unless equalizing or the progressive order needs them. `sink` hears at least one block, which is empty
+/// if there are no points. Without either, the peak of memory is about 32 bytes a point and what the stages take of the mesh
+/// where the points are those of a Hammersley set, ten times as much with other sequences, whose points are listed.
+///
+/// ```
+/// use ldwrap::density::Density;
+/// use ldwrap::pipeline::{Options, Request, run_into};
+/// use ldwrap::{CheckOptions, Silent, SurfaceMesh, shapes};
+///
+/// let (mesh, _) = SurfaceMesh::from_soup(&shapes::cube(2), &CheckOptions::default())?;
+/// let options = Options { request: Request::Count(300_000), ..Options::default() };
+/// let mut sum = glam::DVec3::ZERO;
+/// let streamed = run_into(&mesh, &Density::UNIFORM, &options, &Silent, |block| {
+///     sum += block.samples.iter().map(|s| mesh.locate(&s.point)).sum::<glam::DVec3>() / block.count as f64;
+///     Ok::<(), std::convert::Infallible>(())
+/// })?;
+/// assert_eq!(streamed.count, 300_000);
+/// let (low, high) = mesh.bounds();
+/// assert!(sum.distance(0.5 * (low + high)) < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// As [`run`], and the first error of `sink`, after which it is not called again.
+///
+/// # Panics
+/// As [`run_weighted`].
+pub fn run_into<E>(
+    mesh: &SurfaceMesh,
+    density: &Density,
+    options: &Options,
+    progress: &dyn Progress,
+    mut sink: impl FnMut(Block<'_>) -> Result<(), E>,
+) -> Result<Streamed, StreamError<E>> {
+    let made: Result<_, StreamError<E>> = stages(mesh, density, options, progress, |points| {
+        let count = points.count();
+        let mut take = |samples: &[Sample]| {
+            if progress.is_cancelled() {
+                return Err(OptionsError::Cancelled.into());
+            }
+            sink(Block { samples, count }).map_err(StreamError::Sink)
+        };
+        if count == 0 {
+            take(&[])?;
+        }
+        Ok(((), points.hand_on(take)?))
+    });
+    made.map(|(streamed, ())| streamed)
+}
+
+/// Runs all stages; `finish` makes what is wanted of the points, and says what the correction did to them.
+fn stages<R, E: From<OptionsError>>(
+    mesh: &SurfaceMesh,
+    density: &Density,
+    options: &Options,
+    progress: &dyn Progress,
+    finish: impl FnOnce(Points<'_>) -> Result<(R, Correction), E>,
+) -> Result<(Streamed, R), E> {
     options.validate()?;
     // Extensible points are the same whatever their number, so nothing may depend on it.
     let tolerance = if options.selection == Selection::Extensible { 0.0 } else { options.tolerance };
@@ -235,26 +360,30 @@ pub fn run_weighted(
         choice: options.selection.choice(options.equalize.is_some() && density.is_uniform()),
         tolerance,
     };
-    let Scattered { samples, correction, d_m } = scattering.meet(options.request)?;
-    let (mut samples, equalize) = match &options.equalize {
-        None => (samples, None),
-        Some(options) => {
-            stage("equalize")?;
-            let (samples, report) =
-                equalize_samples(mesh, density, &strips, &domain, samples, options, progress);
-            (samples, Some(report))
-        }
-    };
+    let Scattered { mut points, d_m } = scattering.meet(options.request)?;
+    let mut equalized = None;
+    if let Some(options) = &options.equalize {
+        stage("equalize")?;
+        let (samples, correction) = points.into_samples();
+        let (samples, report) = equalize_samples(mesh, density, &strips, &domain, samples, options, progress);
+        points = Points::Made { samples, correction };
+        equalized = Some(report);
+    }
     if options.order == SampleOrder::Progressive {
         stage("order")?;
-        let points: Vec<_> = samples.iter().map(|s| s.point).collect();
-        samples = progressive(mesh, &points).into_iter().map(|i| samples[i]).collect();
+        let (samples, correction) = points.into_samples();
+        let places: Vec<_> = samples.iter().map(|s| s.point).collect();
+        let samples = progressive(mesh, &places).into_iter().map(|i| samples[i]).collect();
+        points = Points::Made { samples, correction };
     }
     if progress.is_cancelled() {
-        return Err(OptionsError::Cancelled);
+        return Err(OptionsError::Cancelled.into());
     }
-    let tolerance = tolerance * d_m;
-    Ok(Run { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples })
+    let count = points.count();
+    let (made, correction) = finish(points)?;
+    let (equalize, tolerance) = (equalized, tolerance * d_m);
+    let streamed = Streamed { segmentation, strips, domain, correction, equalize, d_m, tolerance, count };
+    Ok((streamed, made))
 }
 
 /// Equalizes samples: those that moved lie in the planar domain where their new face lies.

@@ -1,14 +1,18 @@
 //! Meets a request for points: how many points of the planar domain give the number, density, spacing or
 //! irregularity that is wanted (paper, 4.2 steps 2 and 4).
 
+use std::borrow::Cow;
+use std::convert::Infallible;
+
 use glam::DVec2;
 
 use crate::baseline::HilbertOrder;
-use crate::correct::{Corrected, Correction, Mended};
+use crate::correct::{Correction, Keep, Mended, Pick, Picks};
 use crate::density::Density;
 use crate::domain::{DomainPoints, PlanarDomain, TooManyCells};
 use crate::irregularity;
 use crate::mesh::SurfaceMesh;
+use crate::parallel;
 use crate::pipeline::OptionsError;
 use crate::sample::{Origin, Sample, SurfacePoint};
 use crate::selection::Choice;
@@ -46,11 +50,73 @@ pub(crate) struct Scattering<'a> {
 }
 
 /// The samples that meet a request.
-pub(crate) struct Scattered {
-    pub(crate) samples: Vec<Sample>,
-    pub(crate) correction: Correction,
+pub(crate) struct Scattered<'a> {
+    pub(crate) points: Points<'a>,
     /// sqrt(area / number of points wanted).
     pub(crate) d_m: f64,
+}
+
+/// Samples that are chosen.
+pub(crate) enum Points<'a> {
+    /// To be made of what was caught.
+    Picked { mended: Box<Mended<'a>>, picks: Picks, keep: Keep },
+    /// There already.
+    Made { samples: Vec<Sample>, correction: Correction },
+}
+
+impl<'a> Points<'a> {
+    fn picked(mended: Mended<'a>, picked: Vec<Vec<Pick>>, keep: Keep) -> Self {
+        let picks = Picks::new(&mended, picked);
+        Self::Picked { mended: Box::new(mended), picks, keep }
+    }
+
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        match self {
+            Self::Picked { picks, keep, .. } => keep.count(picks.count()),
+            Self::Made { samples, .. } => samples.len(),
+        }
+    }
+
+    /// All of them, and what the correction did to them.
+    pub(crate) fn into_samples(self) -> (Vec<Sample>, Correction) {
+        if let Self::Made { samples, correction } = self {
+            return (samples, correction);
+        }
+        let mut samples = Vec::with_capacity(self.count());
+        let correction = self.hand_on(|block| {
+            samples.extend_from_slice(block);
+            Ok::<(), Infallible>(())
+        });
+        match correction {
+            Ok(correction) => (samples, correction),
+            Err(never) => match never {},
+        }
+    }
+
+    /// Calls `take` with block after block of them, none of which is empty; the first error ends it. What the correction
+    /// did to them.
+    pub(crate) fn hand_on<E>(
+        self,
+        mut take: impl FnMut(&[Sample]) -> Result<(), E>,
+    ) -> Result<Correction, E> {
+        /// Samples in a block of those that are there.
+        const BLOCK: usize = 1 << 17;
+        match self {
+            Self::Picked { mended, picks, keep } => {
+                let mut correction = Correction::default();
+                picks.blocks(&mended, keep, |block| {
+                    correction.add(block);
+                    take(&parallel::map(block.len(), |i| block[i].sample))
+                })?;
+                Ok(correction)
+            }
+            Self::Made { samples, correction } => {
+                samples.chunks(BLOCK).try_for_each(take)?;
+                Ok(correction)
+            }
+        }
+    }
 }
 
 /// How many points are caught for each that is wanted when the most central ones are chosen. More bring the errors down
@@ -70,8 +136,8 @@ const MOST_FOR_ONE: f64 = 32.0;
 /// So many may be scattered in any case.
 const ALWAYS: f64 = 262_144.0;
 
-impl Scattering<'_> {
-    pub(crate) fn meet(&self, request: Request) -> Result<Scattered, OptionsError> {
+impl<'a> Scattering<'a> {
+    pub(crate) fn meet(&self, request: Request) -> Result<Scattered<'a>, OptionsError> {
         let positive = |name, value: f64| {
             if value.is_finite() && value > 0.0 {
                 Ok(value)
@@ -109,32 +175,46 @@ impl Scattering<'_> {
         self.density.largest().min(affordable.max(4.0))
     }
 
-    /// What `f` makes of the samples that so many points of the domain give.
-    fn scatter<R>(&self, count: u64, d_m: f64, f: impl FnOnce(&Mended<'_>) -> R) -> Result<R, OptionsError> {
+    /// The samples that so many points of the domain give.
+    fn scatter(&self, count: u64, d_m: f64) -> Result<Mended<'a>, OptionsError> {
         let reach = self.tolerance * d_m;
         let points =
             DomainPoints::scatter_near(self.domain, self.strips, &self.sequence, count, self.shift, reach)
                 .map_err(|TooManyCells| OptionsError::TooMany { wanted: count as f64 })?;
         let wrapping = wrap(self.strips, self.domain, &points);
-        Ok(f(&Mended::new(self.mesh, self.strips, self.domain, &points, wrapping, reach)))
+        Ok(Mended::new(self.mesh, self.strips, self.domain, Cow::Owned(points), wrapping, reach))
     }
 
     /// The points of `count` scattered ones that weights leave: those whose third coordinate is below their density
     /// over `peak`. Whether one stays depends on no other.
-    fn weigh(&self, count: u64, d_m: f64, peak: f64) -> Result<Vec<Corrected>, OptionsError> {
-        let (mut caught, _) = self.scatter(count, d_m, |mended| mended.in_order(self.mesh))?;
-        if !self.density.is_uniform() {
-            caught.retain(|c| {
-                sequence::third_coordinate(&self.sequence, c.index) * peak < self.density.at(&c.sample.point)
-            });
-        }
-        Ok(caught)
+    fn weigh(&self, count: u64, d_m: f64, peak: f64) -> Result<Weighed<'a>, OptionsError> {
+        self.caught(count, d_m, |index, density| {
+            sequence::third_coordinate(&self.sequence, index) * peak < density
+        })
     }
 
-    fn at_spacing(&self, d_m: f64) -> Result<Scattered, OptionsError> {
+    /// The points of `count` scattered ones that stay by their number and their density; all if that is uniform.
+    fn caught(
+        &self,
+        count: u64,
+        d_m: f64,
+        stays: impl Fn(u64, f64) -> bool + Sync + Send,
+    ) -> Result<Weighed<'a>, OptionsError> {
+        let mended = self.scatter(count, d_m)?;
+        let picked = if self.density.is_uniform() {
+            mended.pick(|on, nth| !on.is_removed(nth))
+        } else {
+            mended.pick(|on, nth| {
+                on.sample(nth).is_some_and(|c| stays(c.index, self.density.at(&c.sample.point)))
+            })
+        };
+        Ok(Weighed { mended, picked })
+    }
+
+    fn at_spacing(&self, d_m: f64) -> Result<Scattered<'a>, OptionsError> {
         let n = self.mesh.area() / (d_m * d_m);
         let peak = self.peak(n);
-        Ok(scattered(self.weigh(self.domain_count(n * peak), d_m, peak)?, d_m))
+        Ok(self.weigh(self.domain_count(n * peak), d_m, peak)?.kept(Keep::All, d_m))
     }
 
     /// The largest spacing whose irregularity is at most `most`, to a thousandth.
@@ -169,12 +249,11 @@ impl Scattering<'_> {
 
     /// At least `n` points: [`ENOUGH`] times as many, or more where those do not catch enough; `None` if that would be far
     /// too many.
-    fn at_least(&self, n: usize, d_m: f64) -> Result<Option<Vec<Corrected>>, OptionsError> {
+    fn at_least(&self, n: usize, d_m: f64) -> Result<Option<Weighed<'a>>, OptionsError> {
         let mut count = self.count_for(n, ENOUGH);
         loop {
-            let (mut caught, _) = self.scatter(count, d_m, |mended| mended.in_order(self.mesh))?;
-            caught.retain(|c| self.density.at(&c.sample.point) > 0.0);
-            if caught.len() >= n {
+            let caught = self.caught(count, d_m, |_, density| density > 0.0)?;
+            if caught.count() >= n {
                 return Ok(Some(caught));
             }
             count = count.saturating_mul(2);
@@ -192,7 +271,7 @@ impl Scattering<'_> {
 
     /// Exactly `n` points in Hilbert order by mass, each at its place in its strip: for weights that leave almost nothing of
     /// the surface.
-    fn along_curve(&self, n: usize, d_m: f64) -> Scattered {
+    fn along_curve(&self, n: usize, d_m: f64) -> Scattered<'a> {
         let points =
             HilbertOrder::by_mass(self.mesh, &self.density.face_masses(self.mesh)).points(n, 0.5, 0.0);
         let sample = |point: SurfacePoint| {
@@ -201,26 +280,26 @@ impl Scattering<'_> {
             let strip = self.strips.places[point.face.index()].strip;
             Sample { point, strip, place: a * u + b * v + c * w, origin: Origin::Wrapped }
         };
-        let correction = Correction { projected: 0, removed: 0 };
-        Scattered { samples: points.into_iter().map(sample).collect(), correction, d_m }
+        let samples = points.into_iter().map(sample).collect();
+        Scattered { points: Points::Made { samples, correction: Correction::default() }, d_m }
     }
 
     /// Exactly `n` points, thinned out evenly along the sequence.
-    fn any(&self, n: usize) -> Result<Scattered, OptionsError> {
+    fn any(&self, n: usize) -> Result<Scattered<'a>, OptionsError> {
         let d_m = libm::sqrt(self.mesh.area() / n as f64);
         let caught = self.at_least(n, d_m)?;
-        Ok(caught.map_or_else(|| self.along_curve(n, d_m), |caught| scattered(thin_out(caught, n), d_m)))
+        Ok(caught.map_or_else(|| self.along_curve(n, d_m), |caught| caught.kept(Keep::Spread(n), d_m)))
     }
 
     /// Exactly `n` points, the most central in each of as many regions of equal mass.
-    fn by_regions(&self, n: usize) -> Result<Scattered, OptionsError> {
+    fn by_regions(&self, n: usize) -> Result<Scattered<'a>, OptionsError> {
         let d_m = libm::sqrt(self.mesh.area() / n as f64);
         let regions = Regions::new(self.mesh, self.density, n);
         let mut count = self.count_for(n, SURPLUS);
         loop {
-            let chosen = self.scatter(count, d_m, |mended| regions.choose(mended, |c| c.sample))?;
-            if let Some((samples, correction)) = chosen {
-                return Ok(Scattered { samples, correction, d_m });
+            let mended = self.scatter(count, d_m)?;
+            if let Some(picked) = regions.choose(&mended) {
+                return Ok(Weighed { mended, picked }.kept(Keep::All, d_m));
             }
             count = count.saturating_mul(2);
             if self.is_too_many(count, n) {
@@ -230,16 +309,15 @@ impl Scattering<'_> {
     }
 
     /// The first `n` points on the surface.
-    fn first(&self, n: usize) -> Result<Scattered, OptionsError> {
+    fn first(&self, n: usize) -> Result<Scattered<'a>, OptionsError> {
         let d_m = libm::sqrt(self.mesh.area() / n as f64);
         // The same for every n, or points that stayed might not stay for another n.
         let peak = self.density.largest();
         let mut count = self.domain_count(n as f64 * peak);
         loop {
-            let mut caught = self.weigh(count, d_m, peak)?;
-            if caught.len() >= n {
-                caught.truncate(n);
-                return Ok(scattered(caught, d_m));
+            let caught = self.weigh(count, d_m, peak)?;
+            if caught.count() >= n {
+                return Ok(caught.kept(Keep::First(n), d_m));
             }
             // A tenth more than are missing, and at least one.
             count = count.saturating_add(1 + count / 10);
@@ -248,23 +326,23 @@ impl Scattering<'_> {
 
     /// Exactly `n` points. The number caught jumps a little as points of the domain are added, so a few numbers are
     /// tried; where none gives `n`, the surplus of the best is left out, evenly along the sequence.
-    fn along_sequence(&self, n: usize) -> Result<Scattered, OptionsError> {
+    fn along_sequence(&self, n: usize) -> Result<Scattered<'a>, OptionsError> {
         let d_m = libm::sqrt(self.mesh.area() / n as f64);
         let peak = self.peak(n as f64);
         let nominal = self.domain_count(n as f64 * peak);
-        let mut best: Option<Vec<Corrected>> = None;
+        let mut best: Option<Weighed<'a>> = None;
         let mut tried = Vec::new();
         let trials = self.trials(n, nominal);
         let mut count = nominal;
         loop {
             tried.push(count);
             let caught = self.weigh(count, d_m, peak)?;
-            let found = caught.len();
-            if found >= n && best.as_ref().is_none_or(|b| found < b.len()) {
+            let found = caught.count();
+            if found >= n && best.as_ref().is_none_or(|best| found < best.count()) {
                 best = Some(caught);
             }
-            if found == n || (tried.len() >= trials && best.is_some()) {
-                break;
+            if let Some(best) = best.take_if(|_| found == n || tried.len() >= trials) {
+                return Ok(best.kept(Keep::Spread(n), d_m));
             }
             count = if tried.len() < trials {
                 self.next_count(count, (n as f64 - found as f64) * peak, &tried)
@@ -273,7 +351,6 @@ impl Scattering<'_> {
                 tried.iter().copied().max().unwrap_or(1).saturating_mul(2)
             };
         }
-        Ok(scattered(thin_out(best.unwrap_or_default(), n), d_m))
     }
 
     /// How many numbers of domain points are tried: many where a trial is cheap. It costs about the faces, the points
@@ -302,27 +379,20 @@ impl Scattering<'_> {
     }
 }
 
-/// What is left of the correction when some of the points are.
-fn scattered(kept: Vec<Corrected>, d_m: f64) -> Scattered {
-    let correction = Correction {
-        projected: kept.iter().filter(|c| c.sample.origin == Origin::Projected).count(),
-        removed: kept.iter().map(|c| c.copies_removed as usize).sum(),
-    };
-    Scattered { samples: kept.into_iter().map(|c| c.sample).collect(), correction, d_m }
+/// What was caught, and which of it stays.
+struct Weighed<'a> {
+    mended: Mended<'a>,
+    picked: Vec<Vec<Pick>>,
 }
 
-/// Leaves out points, evenly along the sequence, until `n` are left.
-fn thin_out(corrected: Vec<Corrected>, n: usize) -> Vec<Corrected> {
-    let count = corrected.len();
-    let surplus = count.saturating_sub(n);
-    // In 64 bits also where indices have 32.
-    let (wide_count, wide_surplus) = (count as u64, surplus as u64);
-    let mut left_out =
-        (0..wide_surplus).map(|k| (((2 * k + 1) * wide_count) / (2 * wide_surplus)) as usize).peekable();
-    corrected
-        .into_iter()
-        .enumerate()
-        .filter(|&(i, _)| left_out.next_if_eq(&i).is_none())
-        .map(|(_, c)| c)
-        .collect()
+impl<'a> Weighed<'a> {
+    /// How many stay.
+    fn count(&self) -> usize {
+        self.picked.iter().map(Vec::len).sum()
+    }
+
+    /// Of those that stay, in order, the ones that are kept.
+    fn kept(self, keep: Keep, d_m: f64) -> Scattered<'a> {
+        Scattered { points: Points::picked(self.mended, self.picked, keep), d_m }
+    }
 }

@@ -12,12 +12,12 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::buckets::Buckets;
-use crate::correct::{Corrected, Correction, Mended, in_order};
+use crate::correct::{Corrected, Mended, Pick};
 use crate::density::Density;
 use crate::halves::split_by_mass;
 use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
-use stays::{Candidate, stays};
+use stays::{Candidate, Stays};
 use walk::{Table, Walk};
 
 /// A face or a component as a mass in one place.
@@ -145,12 +145,8 @@ impl<'a> Regions<'a> {
                     // Rounding may carry the end of a face over.
                     let region = self.region_at(along + mass * walk.share(weights)).min(last);
                     let off = walk.position(weights).distance_squared(centroids[region - first]) * unit;
-                    candidates.push(Candidate {
-                        region: region as u32,
-                        off: off as f32,
-                        face,
-                        nth: nth as u32,
-                    });
+                    let pick = Pick { face, nth: nth as u32 };
+                    candidates.push(Candidate { region: region as u32, off: off as f32, pick });
                 }
             }
         }
@@ -158,35 +154,55 @@ impl<'a> Regions<'a> {
     }
 
     /// Of what was caught one point a region stays, the one nearest to its centroid; a region without points gets one of
-    /// the next that has some to spare. `None` if less was caught than there are regions. In
-    /// order of the sequence, with what the correction did to those that stay.
-    pub(crate) fn choose<R: Send>(
-        &self,
-        caught: &Mended<'_>,
-        take: impl Fn(&Corrected) -> R + Sync + Send,
-    ) -> Option<(Vec<R>, Correction)> {
+    /// the next that has some to spare. `None` if less was caught than there are regions. In pieces, region after region.
+    pub(crate) fn choose(&self, caught: &Mended<'_>) -> Option<Vec<Vec<Pick>>> {
+        /// Candidates that are there at a time, or some more.
+        const TOGETHER: usize = 1 << 20;
+        match self.choose_by(caught, TOGETHER) {
+            // Where the last of them are too few to give what the last regions lack, all must be there.
+            None if caught.count() > TOGETHER => self.choose_by(caught, usize::MAX),
+            chosen => chosen,
+        }
+    }
+
+    /// As [`choose`](Self::choose), with about so many candidates at a time; `None` also if the last so many are too few.
+    fn choose_by(&self, caught: &Mended<'_>, together: usize) -> Option<Vec<Vec<Pick>>> {
         /// Points a piece of work is to have, and regions of a bucket.
         const POINTS: usize = 8192;
         const REGIONS: usize = 8192;
         let faces = self.row.len();
-        let size = (POINTS * faces / caught.count().max(1)).clamp(1, POINTS);
-        let candidates = Buckets::new(
-            faces.div_ceil(size),
-            |piece| self.candidates(caught, piece * size..((piece + 1) * size).min(faces)),
-            self.count.div_ceil(REGIONS),
-            |candidate| candidate.region as usize / REGIONS,
-        );
-        let chosen = stays(candidates, self.count, REGIONS)?;
-        let samples = |bucket: usize| {
-            let mut samples = Vec::with_capacity(chosen[bucket].len());
-            // Most of a face's regions follow each other.
-            for of_face in chosen[bucket].chunk_by(|a, b| a.face == b.face) {
-                let on = caught.on(of_face[0].face);
-                samples.extend(of_face.iter().filter_map(|c| on.sample(c.nth as usize)));
-            }
-            samples
+        let faces_for = |points: usize| {
+            let most = points as u128 * faces as u128 / caught.count().max(1) as u128;
+            most.clamp(1, faces as u128) as usize
         };
-        Some(in_order(chosen.len(), samples, caught.end(), take))
+        let size = faces_for(POINTS).min(POINTS);
+        let group = faces_for(together).next_multiple_of(size);
+        let buckets = self.count.div_ceil(REGIONS);
+        let mut stays = Stays::new(self.count, REGIONS);
+        let mut is_enough = true;
+        // Of buckets that reach into the next group.
+        let mut carried: Vec<Candidate> = Vec::new();
+        for start in (0..faces).step_by(group) {
+            let end = start.saturating_add(group).min(faces);
+            let first = stays.next();
+            let candidates = Buckets::new(
+                1 + (end - start).div_ceil(size),
+                |piece| match piece.checked_sub(1).map(|piece| start + piece * size) {
+                    Some(start) => self.candidates(caught, start..(start + size).min(end)),
+                    None => carried.clone(),
+                },
+                buckets - first,
+                |candidate| candidate.region as usize / REGIONS - first,
+            );
+            // Nothing of the faces that follow lies in regions before theirs.
+            let complete = match self.row.get(end) {
+                Some(next) => self.region_at(next.along) / REGIONS - first,
+                None => buckets - first,
+            };
+            is_enough = stays.add(&candidates, complete);
+            carried = (complete..candidates.count()).flat_map(|b| candidates.bucket(b)).copied().collect();
+        }
+        is_enough.then(|| stays.into_picks())
     }
 }
 

@@ -204,7 +204,9 @@ pub(crate) enum WeightsOf {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Outputs")]
 pub(crate) struct WrapOutputArgs {
-    /// Write the points: .ply, .xyz, .csv, .npy, .npz, .json, .obj or .glb, or `-` for stdout with --format
+    /// Write the points: .ply, .xyz, .csv, .npy, .npz, .json, .obj or .glb, or `-` for stdout with --format. With
+    /// --no-equalize they are written while they are made, so that memory never holds them all; not so with --order
+    /// progressive, as .npz, .obj or .glb, with cell-area, and beside --strips, --preview or --quality, which look at all
     #[arg(short, long, value_name = "POINTS")]
     pub(crate) output: Option<PathBuf>,
     /// The format of the points [default: by the name's extension]

@@ -11,14 +11,14 @@ use ldwrap::pipeline::Options;
 use ldwrap::{MeshError, Progress, Sample, SurfaceMesh, SurfacePoint};
 use sha2::{Digest, Sha256};
 
-use crate::args::{BatchArgs, MeshArgs};
+use crate::args::{BatchArgs, BatchOutputArgs, MeshArgs};
 use crate::batch::Task;
 use crate::batch::record::{Ended, Kind, Made, Ratios, Record, Source, Trouble, now, number};
 use crate::exit::Outcome;
-use crate::input;
-use crate::job::{self, Carried, PointOutput};
-use crate::output::{Destination, write_safely};
-use crate::points;
+use crate::input::{self, Input};
+use crate::job::{self, Carried, Held};
+use crate::output::Staged;
+use crate::points::{self, PointFile, Taking};
 use crate::progress::Stages;
 use crate::weights;
 
@@ -104,32 +104,37 @@ impl<'a> Plan<'a> {
         let mesh = MeshArgs { mesh: path.to_path_buf(), reading: *reading };
         let input = input::read_detail(&mesh, job::detail(placing, &self.carried), &placing.only, stages)
             .map_err(|error| trouble(kind_of(&error, path))(error))?;
-        job::points_fit(&self.options, input.mesh.area(), reading).map_err(trouble(Kind::Options))?;
+        let BatchOutputArgs { format, eta, .. } = self.args.outputs;
+        let in_blocks = points::in_blocks(&input, format, &self.carried);
+        let held = if in_blocks && !eta { Held::Block } else { Held::All };
+        let fit = |options, input: &Input| job::points_fit(options, held, input.mesh.area(), reading);
+        fit(&self.options, &input).map_err(trouble(Kind::Options))?;
         let ground = weights::prepare(placing, input, self.options).map_err(trouble(Kind::Options))?;
         // Quotas have other numbers.
-        job::points_fit(&ground.options, ground.input.mesh.area(), reading)
-            .map_err(trouble(Kind::Options))?;
-        let run = ground.run(stages).map_err(trouble(Kind::Options))?;
-        let (input, samples) = (&ground.input, ground.lifted(&run.samples));
+        fit(&ground.options, &ground.input).map_err(trouble(Kind::Options))?;
+        let begin = || Staged::begin_in(temporaries, target);
+        let file = PointFile::new(&ground.input, format, &self.carried, &begin);
+        let mut taking = Taking::new(&ground, Some(file.map_err(trouble(Kind::Options))?), held);
+        let made = ground.run_into(stages, |block| taking.take(block, stages));
+        let run = made.map_err(|error| trouble(kind_of_making(&error))(error))?;
+        let taken = taking.finish(stages).map_err(|error| trouble(kind_of_making(&error))(error))?;
+        let input = &ground.input;
+        let samples = ground.lifted(taken.samples.as_deref().unwrap_or_default());
+        let eta = eta.then(|| energy_eta(&input.mesh, &samples, stages));
         stages.begin("write", 0);
-        let wanted = PointOutput {
-            destination: Destination::File(target.to_path_buf()),
-            format: self.args.outputs.format,
-            carried: self.carried.clone(),
+        let bytes = match taken.file {
+            Some(file) => put(file, target).map_err(trouble(Kind::Write))?,
+            None => 0,
         };
-        let bytes = points::bytes(input, &samples, &wanted).map_err(trouble(Kind::Options))?;
-        let eta = self.args.outputs.eta.then(|| eta(&input.mesh, &samples, stages));
-        stages.begin("write", 0);
-        write(temporaries, target, &bytes).map_err(trouble(Kind::Write))?;
         let topology = input.mesh.topology();
         Ok(Made {
-            bytes: bytes.len() as u64,
+            bytes,
             vertices: input.mesh.vertex_count(),
             triangles: input.mesh.face_count(),
             components: topology.components().count,
             area: number(input.mesh.area()),
             strips: run.strips.strips.len(),
-            points: run.samples.len(),
+            points: run.count,
             d_m: number(run.d_m),
             irregularity: Ratios::of(&run.irregularity()),
             eta: eta.and_then(number),
@@ -149,11 +154,16 @@ fn is_no_pipe(file: Option<&Metadata>) -> Result<(), Trouble> {
     }
 }
 
-fn write(temporaries: &Path, target: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+fn put(file: Staged, target: &Path) -> anyhow::Result<u64> {
     if let Some(folder) = target.parent() {
         fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
     }
-    write_safely(temporaries, target, bytes)
+    file.name_safely()
+}
+
+/// What kept points from being made and written.
+fn kind_of_making(error: &anyhow::Error) -> Kind {
+    if error.chain().any(|cause| cause.is::<std::io::Error>()) { Kind::Write } else { Kind::Options }
 }
 
 /// The points of an earlier run go, so that nothing there contradicts the summary.
@@ -204,7 +214,7 @@ fn message(error: &anyhow::Error, name: &str) -> String {
     text.strip_prefix(name).and_then(|rest| rest.strip_prefix(": ")).map_or(text.clone(), str::to_owned)
 }
 
-fn eta(mesh: &SurfaceMesh, samples: &[Sample], progress: &dyn Progress) -> f64 {
+fn energy_eta(mesh: &SurfaceMesh, samples: &[Sample], progress: &dyn Progress) -> f64 {
     let points: Vec<SurfacePoint> = samples.iter().map(|sample| sample.point).collect();
     let planes = EnergyPlanes::new(mesh, points.len(), &EnergyOptions::default(), progress);
     planes.measure(mesh, &points, progress).eta

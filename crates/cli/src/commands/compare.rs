@@ -89,12 +89,12 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Outcome {
     } else {
         table::text(&rows).into_bytes()
     };
-    outputs.stage(&Destination::Stdout, printed)?;
+    outputs.stage(&Destination::Stdout, &printed)?;
     if let Some(destination) = &plot {
         outputs.stage(
             destination,
             error_plot(&format!("Root mean square errors on {}", file_name(&name)), &panels(&rows, &trials))
-                .into_bytes(),
+                .as_bytes(),
         )?;
     }
     for file in outputs.commit()? {

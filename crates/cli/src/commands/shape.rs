@@ -34,7 +34,7 @@ pub(crate) fn run(args: &ShapeArgs, quiet: bool) -> Outcome {
         Err(error) => return Err(Failure::wrong_use(format!("{}: {error}", args.output.display()))),
     };
     let mut outputs = Outputs::default();
-    outputs.stage(&destination, bytes)?;
+    outputs.stage(&destination, &bytes)?;
     let files = outputs.commit().with_context(|| name)?;
     let stages = Stages::new(quiet);
     for file in files {

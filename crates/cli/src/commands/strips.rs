@@ -36,7 +36,7 @@ pub(crate) fn run(args: &StripsArgs, quiet: bool) -> Outcome {
     let closed = CLOSED * mesh.diagonal();
     let svg = strips_svg(&strips, &domain, &[], closed);
     let mut outputs = Outputs::default();
-    outputs.stage(&destination, svg.into_bytes())?;
+    outputs.stage(&destination, svg.as_bytes())?;
     stages.finish();
     let files = outputs.commit()?;
     let largest = strips.strips.iter().map(|strip| strip.faces.len()).max().unwrap_or(0);

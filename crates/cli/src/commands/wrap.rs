@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use anyhow::anyhow;
 use ldwrap::correct::Correction;
 use ldwrap::irregularity::Irregularity;
-use ldwrap::pipeline::Run;
+use ldwrap::pipeline::Streamed;
 use ldwrap::{Progress, SurfacePoint};
 
 use crate::args::WrapArgs;
@@ -12,12 +13,13 @@ use crate::commands::counted;
 use crate::exit::Outcome;
 use crate::input::{self, Input};
 use crate::job::{self, Carried, WrapOutputs};
-use crate::output::Outputs;
+use crate::output::{Outputs, Staged};
 use crate::picture::{PreviewOptions, preview_png, strips_svg};
-use crate::points;
+use crate::points::{PointFile, Taken, Taking};
 use crate::progress::Stages;
 use crate::quality::Judge;
 use crate::report::{self, MeshReport, Report};
+use crate::stop;
 use crate::weights::{self, Ground};
 
 /// Runs the command.
@@ -31,15 +33,25 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     for note in input::notes(&input.repaired) {
         stages.say(&format!("note: {}: {note}", input.name));
     }
-    job::points_fit(&options, input.mesh.area(), &args.mesh.reading)?;
+    let held = outputs.held(&input);
+    job::points_fit(&options, held, input.mesh.area(), &args.mesh.reading)?;
     let ground = weights::prepare(placing, input, options)?;
     // Quotas have other numbers.
-    job::points_fit(&ground.options, ground.input.mesh.area(), &args.mesh.reading)?;
-    let run = ground.run(&stages)?;
+    job::points_fit(&ground.options, held, ground.input.mesh.area(), &args.mesh.reading)?;
+    stop::listen();
+    let begin = || match &outputs.points {
+        Some(points) => Staged::begin(&points.destination),
+        None => Err(anyhow!("no file of points is wanted")),
+    };
+    let file = outputs.points.as_ref();
+    let file = file.map(|points| PointFile::new(&ground.input, points.format, &points.carried, &begin));
+    let mut taking = Taking::new(&ground, file.transpose()?, held);
+    let run = ground.run_into(&stages, |block| taking.take(block, &stages))?;
+    let taken = taking.finish(&stages)?;
     stages.begin("irregularity", 0);
     let irregularity = run.irregularity();
     let job = Job { ground: &ground, run: &run, irregularity };
-    let files = write(job, &outputs, &stages)?;
+    let files = write(job, taken, &outputs, &stages)?;
     for line in summary(job) {
         stages.say(&line);
     }
@@ -53,33 +65,32 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
 #[derive(Clone, Copy)]
 struct Job<'a> {
     ground: &'a Ground,
-    run: &'a Run,
+    run: &'a Streamed,
     irregularity: Irregularity,
 }
 
-fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
+fn write(job: Job<'_>, taken: Taken, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
     let Job { ground, run, irregularity } = job;
     let Ground { input, density, options, .. } = ground;
     let Input { mesh, repaired, .. } = input;
-    let samples = ground.lifted(&run.samples);
+    let samples = taken.samples.unwrap_or_default();
     let mut outputs = Outputs::default();
+    if let Some(points) = taken.file {
+        outputs.add(points)?;
+    }
     if wanted.strips.is_some() || wanted.preview.is_some() {
         stages.begin("draw", 0);
     }
     if let Some(destination) = &wanted.strips {
-        let svg = strips_svg(&run.strips, &run.domain, &run.samples, run.tolerance);
-        outputs.stage(destination, svg.into_bytes())?;
+        let svg = strips_svg(&run.strips, &run.domain, &samples, run.tolerance);
+        outputs.stage(destination, svg.as_bytes())?;
     }
     if let Some(destination) = &wanted.preview {
-        let preview = preview_png(ground.mesh(), &run.strips, &run.samples, &PreviewOptions::default());
-        outputs.stage(destination, preview)?;
-    }
-    if let Some(wanted) = &wanted.points {
-        stages.begin("write", 0);
-        outputs.stage(&wanted.destination, points::bytes(input, &samples, wanted)?)?;
+        let preview = preview_png(ground.mesh(), &run.strips, &samples, &PreviewOptions::default());
+        outputs.stage(destination, &preview)?;
     }
     let quality = wanted.quality.then(|| {
-        let points: Vec<SurfacePoint> = samples.iter().map(|sample| sample.point).collect();
+        let points: Vec<SurfacePoint> = ground.lifted(&samples).iter().map(|sample| sample.point).collect();
         Judge::new(mesh, points.len(), stages).quality(&points, stages)
     });
     let seconds = stages.finish();
@@ -93,7 +104,7 @@ fn write(job: Job<'_>, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<
             quality,
             seconds,
         );
-        outputs.stage(destination, report::json(&report)?)?;
+        outputs.stage(destination, &report::json(&report)?)?;
     }
     outputs.commit()
 }
@@ -102,7 +113,7 @@ fn summary(job: Job<'_>) -> Vec<String> {
     let Job { ground: Ground { input: Input { name, mesh, .. }, .. }, run, irregularity } = job;
     let Irregularity { bound, refined, exact, undecided } = irregularity;
     let Correction { projected, removed } = run.correction;
-    let count = run.samples.len();
+    let count = run.count;
     let mut lines = vec![
         format!(
             "{name}: {} on {} in {}, mean distance {:.4e}",

@@ -11,6 +11,7 @@ mod parts;
 mod plane;
 mod repairs;
 mod shape;
+mod stream;
 mod view;
 mod wrap;
 mod wrong_use;

@@ -1,6 +1,9 @@
 //! Regions of equal mass, by hand and by invariants.
 
+use std::borrow::Cow;
+
 use super::*;
+use crate::correct::{Keep, Picks};
 use crate::domain::{DomainPoints, PlanarDomain};
 use crate::planted;
 use crate::segment::{SegmentOptions, segment};
@@ -9,15 +12,48 @@ use crate::shapes::{self, Shape};
 use crate::unfold::{Strips, unfold};
 use crate::wrap::wrap;
 
-/// What stays of `caught` points of a mesh when `n` are wanted.
-fn chosen(mesh: &SurfaceMesh, caught: f64, n: usize) -> Option<Vec<Corrected>> {
+/// What `f` makes of `caught` points of a mesh.
+fn with_caught<R>(mesh: &SurfaceMesh, caught: f64, f: impl FnOnce(&Mended<'_>) -> R) -> R {
     let strips: Strips = unfold(mesh, &segment(mesh, &SegmentOptions::default()));
     let domain = PlanarDomain::lay_out(&strips);
     let count = (caught * domain.room(mesh.area())) as u32;
     let points = DomainPoints::scatter(&domain, &Sequence::default(), count, glam::DVec2::ZERO);
     let wrapping = wrap(&strips, &domain, &points);
-    let mended = Mended::new(mesh, &strips, &domain, &points, wrapping, 0.0);
-    Regions::new(mesh, &Density::UNIFORM, n).choose(&mended, |c| *c).map(|(chosen, _)| chosen)
+    let mended = Mended::new(mesh, &strips, &domain, Cow::Borrowed(&points), wrapping, 0.0);
+    f(&mended)
+}
+
+/// What stays of `caught` points of a mesh when `n` are wanted.
+fn chosen(mesh: &SurfaceMesh, caught: f64, n: usize) -> Option<Vec<Corrected>> {
+    with_caught(mesh, caught, |mended| {
+        let picks = Picks::new(mended, Regions::new(mesh, &Density::UNIFORM, n).choose(mended)?);
+        let mut chosen = Vec::new();
+        let blocks = picks.blocks(mended, Keep::All, |block| {
+            chosen.extend(block.iter().map(|c| **c));
+            Ok::<(), std::convert::Infallible>(())
+        });
+        blocks.ok().map(|()| chosen)
+    })
+}
+
+#[test]
+fn candidates_may_come_some_at_a_time() {
+    let n = 40_000;
+    // Few large faces, and many small ones.
+    for mesh in [planted::mesh(&shapes::cube(1)), planted::mesh(&Shape::Sphere.generate())] {
+        let regions = Regions::new(&mesh, &Density::UNIFORM, n);
+        for (surplus, fewest) in [(2.0, 9000), (1.01, 40_000)] {
+            with_caught(&mesh, surplus * n as f64, |mended| {
+                let all = regions.choose_by(mended, usize::MAX).expect("enough");
+                assert_eq!(all.iter().map(Vec::len).sum::<usize>(), n);
+                for together in [fewest, 50_000] {
+                    assert!(regions.choose_by(mended, together).is_none_or(|some| some == all));
+                }
+                assert!(surplus < 2.0 || regions.choose_by(mended, fewest).is_some());
+            });
+        }
+        with_caught(&mesh, 0.99 * n as f64, |mended| assert!(regions.choose(mended).is_none()));
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::str::FromStr;
+use std::sync::OnceLock;
 
 use glam::DVec4;
 
@@ -85,6 +86,11 @@ impl Attribute {
             Self::Number(name) => attributes.numbers.iter().any(|(known, _)| known == name),
             _ => true,
         }
+    }
+
+    /// Whether its value at a point depends on all the other points, so that it cannot be told block by block.
+    pub fn is_of_all_points(&self) -> bool {
+        matches!(self, Self::CellArea)
     }
 
     /// Whether files of this format can hold it.
@@ -174,23 +180,59 @@ pub fn gather(
     samples: &[Sample],
     wanted: &[Attribute],
 ) -> Result<Vec<Field>, AttributeError> {
-    let points: Vec<SurfacePoint> = samples.iter().map(|sample| sample.point).collect();
-    let gathering = Gathering { mesh, attributes, places: Places::new(mesh, attributes), samples, points };
-    let mut fields =
-        vec![gathering.reals("position", &["x", "y", "z"], Precision::Double, |p| mesh.locate(p).to_array())];
-    let smooth = wanted.contains(&Attribute::SmoothNormal);
-    for attribute in wanted {
-        if !attribute.is_in(attributes) {
-            return Err(AttributeError::Absent(attribute.clone()));
-        }
-        fields.push(gathering.field(attribute, smooth));
+    Ok(Gatherer::new(mesh, attributes, wanted)?.fields(samples))
+}
+
+/// Gathers the fields of block after block of samples, as [`gather`] does those of all.
+#[derive(Clone, Debug)]
+pub struct Gatherer<'a> {
+    mesh: &'a SurfaceMesh,
+    attributes: &'a MeshAttributes,
+    /// Made when something is looked up, because it may take memory.
+    places: OnceLock<Places<'a>>,
+    wanted: Vec<Attribute>,
+}
+
+impl<'a> Gatherer<'a> {
+    /// Not to be called by pieces of parallel work: the first call does such work itself.
+    fn places(&self) -> &Places<'a> {
+        self.places.get_or_init(|| Places::new(self.mesh, self.attributes))
     }
-    rename_numbers(&mut fields, wanted);
-    let mut columns: Vec<&String> = fields.iter().flat_map(|field| &field.columns).collect();
-    columns.sort_unstable();
-    match columns.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(AttributeError::Twice(pair[0].clone())),
-        None => Ok(fields),
+
+    /// For samples on `mesh`, which was made from a file with these attributes. What is looked up in the attributes takes
+    /// linear time in the mesh once.
+    ///
+    /// # Errors
+    /// As [`gather`].
+    pub fn new(
+        mesh: &'a SurfaceMesh,
+        attributes: &'a MeshAttributes,
+        wanted: &[Attribute],
+    ) -> Result<Self, AttributeError> {
+        if let Some(absent) = wanted.iter().find(|attribute| !attribute.is_in(attributes)) {
+            return Err(AttributeError::Absent(absent.clone()));
+        }
+        let gatherer = Self { mesh, attributes, places: OnceLock::new(), wanted: wanted.to_vec() };
+        let fields = gatherer.fields(&[]);
+        let mut columns: Vec<&String> = fields.iter().flat_map(|field| &field.columns).collect();
+        columns.sort_unstable();
+        match columns.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(AttributeError::Twice(pair[0].clone())),
+            None => Ok(gatherer),
+        }
+    }
+
+    /// The position and the attributes of some samples; those that are of all points as if there were no others.
+    pub fn fields(&self, samples: &[Sample]) -> Vec<Field> {
+        let Self { mesh, wanted, .. } = self;
+        let points: Vec<SurfacePoint> = samples.iter().map(|sample| sample.point).collect();
+        let gathering = Gathering { gatherer: self, samples, points };
+        let position = |p: &SurfacePoint| mesh.locate(p).to_array();
+        let mut fields = vec![gathering.reals("position", &["x", "y", "z"], Precision::Double, position)];
+        let smooth = wanted.contains(&Attribute::SmoothNormal);
+        fields.extend(wanted.iter().map(|attribute| gathering.field(attribute, smooth)));
+        rename_numbers(&mut fields, wanted);
+        fields
     }
 }
 
@@ -221,17 +263,17 @@ fn rename_numbers(fields: &mut [Field], wanted: &[Attribute]) {
     }
 }
 
-struct Gathering<'a> {
-    mesh: &'a SurfaceMesh,
-    attributes: &'a MeshAttributes,
-    places: Places<'a>,
-    samples: &'a [Sample],
+/// What is gathered of some samples.
+struct Gathering<'g, 'a> {
+    gatherer: &'g Gatherer<'a>,
+    samples: &'g [Sample],
     points: Vec<SurfacePoint>,
 }
 
-impl Gathering<'_> {
+impl Gathering<'_, '_> {
     fn field(&self, attribute: &Attribute, smooth: bool) -> Field {
-        let Self { mesh, attributes, places, samples, points } = self;
+        let Self { gatherer, samples, points } = self;
+        let Gatherer { mesh, attributes, .. } = gatherer;
         let single = Precision::Single;
         match attribute {
             Attribute::FlatNormal => {
@@ -243,23 +285,30 @@ impl Gathering<'_> {
                 }
             }
             Attribute::SmoothNormal => {
+                let places = gatherer.places();
                 self.reals("normal", &["nx", "ny", "nz"], single, |p| places.normal(mesh, p).to_array())
             }
-            Attribute::Uv => self.reals("uv", &["u", "v"], single, |p| {
-                places.uv(mesh, p).map_or([f64::NAN; 2], |uv| uv.to_array())
-            }),
+            Attribute::Uv => {
+                let places = gatherer.places();
+                let uv = |p: &SurfacePoint| places.uv(mesh, p).map_or([f64::NAN; 2], |uv| uv.to_array());
+                self.reals("uv", &["u", "v"], single, uv)
+            }
             Attribute::Color => {
+                let places = gatherer.places();
                 self.colors("color", ["red", "green", "blue", "alpha"], |p| places.color(mesh, p))
             }
             Attribute::VertexColor => {
+                let places = gatherer.places();
                 let columns = ["vertex_red", "vertex_green", "vertex_blue", "vertex_alpha"];
                 self.colors("vertex_color", columns, |p| places.vertex_color(mesh, p))
             }
             Attribute::Material => {
+                let places = gatherer.places();
                 let ids = points.iter().map(|p| places.material(mesh, p.face)).collect();
                 names("material", attributes.material_of.names(), ids)
             }
             Attribute::Part => {
+                let places = gatherer.places();
                 let ids = points.iter().map(|p| places.part(mesh, p.face)).collect();
                 names("part", attributes.parts.names(), ids)
             }
@@ -283,6 +332,7 @@ impl Gathering<'_> {
                 Field::new("cell_area", &["cell_area"], areas)
             }
             Attribute::Number(name) => {
+                let places = gatherer.places();
                 let index = attributes.numbers.iter().position(|(known, _)| known == name);
                 self.reals(name, &[name], Precision::Double, |p| {
                     [index.and_then(|index| places.number(mesh, p, index)).unwrap_or(f64::NAN)]

@@ -48,6 +48,18 @@ impl Field {
         Self { key: key.to_owned(), columns: columns.iter().map(|&column| column.to_owned()).collect(), data }
     }
 
+    /// The same field of no points.
+    pub(super) fn without_values(&self) -> Self {
+        let data = match &self.data {
+            FieldData::Real(_, precision) => FieldData::Real(Vec::new(), *precision),
+            FieldData::Id(_) => FieldData::Id(Vec::new()),
+            FieldData::Byte(_) => FieldData::Byte(Vec::new()),
+            FieldData::Name { names, .. } => FieldData::Name { names: names.clone(), ids: Vec::new() },
+            FieldData::Origin(_) => FieldData::Origin(Vec::new()),
+        };
+        Self { key: self.key.clone(), columns: self.columns.clone(), data }
+    }
+
     /// How many points it has values for.
     pub fn point_count(&self) -> usize {
         let values = match &self.data {

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 use crate::attributes::from_srgb8;
 use crate::io::points::field::origin_number;
+use crate::io::points::stream::invalid;
 use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError};
 
 /// Component types of accessors.
@@ -164,10 +165,6 @@ impl Document {
         self.views.push(view);
         self.accessors.push(accessor);
     }
-}
-
-fn invalid(problem: String) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, problem)
 }
 
 pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError> {

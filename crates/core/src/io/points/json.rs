@@ -1,23 +1,26 @@
 //! Points as JSON.
 
 use std::io;
+use std::ops::Range;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError};
 
-pub(super) fn write(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
-    // A line for each point, so that people and `diff` can read the file.
-    let count = fields.first().map_or(0, Field::point_count);
-    let mut before = "[\n";
-    for point in 0..count {
-        out.write_all(before.as_bytes())?;
-        before = ",\n";
+/// A line for each point, so that people and `diff` can read the file; `before` points have theirs.
+pub(super) fn write_rows(
+    fields: &[Field],
+    points: Range<usize>,
+    before: usize,
+    out: &mut Vec<u8>,
+) -> io::Result<()> {
+    for point in points {
+        out.extend_from_slice(if before + point == 0 { b"[\n" } else { b",\n" });
         for (index, field) in fields.iter().enumerate() {
-            out.write_all(if index == 0 { b"{" } else { b"," })?;
+            out.push(if index == 0 { b'{' } else { b',' });
             serde_json::to_writer(&mut *out, &field.key)?;
-            out.write_all(b":")?;
+            out.push(b':');
             let width = field.columns.len();
             let place = point * width..(point + 1) * width;
             match &field.data {
@@ -31,16 +34,21 @@ pub(super) fn write(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()>
                 FieldData::Origin(origins) => serde_json::to_writer(&mut *out, &origins[point])?,
             }
         }
-        out.write_all(b"}")?;
+        out.push(b'}');
     }
+    Ok(())
+}
+
+/// What stands behind so many points.
+pub(super) fn write_end(count: usize, out: &mut dyn io::Write) -> io::Result<()> {
     out.write_all(if count == 0 { b"[]\n" } else { b"\n]\n" })
 }
 
 /// One value as it is, several as a list; numbers that are none are null.
-fn write_list<T: Serialize>(values: &[T], mut out: &mut dyn io::Write) -> io::Result<()> {
+fn write_list<T: Serialize>(values: &[T], out: &mut Vec<u8>) -> io::Result<()> {
     match values {
-        [value] => serde_json::to_writer(&mut out, value)?,
-        values => serde_json::to_writer(&mut out, values)?,
+        [value] => serde_json::to_writer(out, value)?,
+        values => serde_json::to_writer(out, values)?,
     }
     Ok(())
 }

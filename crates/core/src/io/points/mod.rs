@@ -7,10 +7,12 @@ mod json;
 mod npy;
 mod npz;
 mod ply;
+mod stream;
 mod text;
 
-pub use attribute::{Attribute, AttributeError, gather};
+pub use attribute::{Attribute, AttributeError, Gatherer, gather};
 pub use field::{Field, FieldData, Precision};
+pub use stream::PointWriter;
 
 use std::fmt;
 use std::io;
@@ -78,6 +80,12 @@ impl PointFormat {
         }
     }
 
+    /// Whether its files can be written block by block ([`PointWriter`]): not NPZ, OBJ and GLB, which hold each field of all
+    /// points in one piece.
+    pub fn takes_blocks(self) -> bool {
+        !matches!(self, Self::Npz | Self::Obj | Self::Glb)
+    }
+
     /// The format of this name, or of a file of this name by what follows the last dot; in any case. `txt`, `pts` and
     /// `asc` are read as `xyz`.
     pub fn from_name(name: &str) -> Option<Self> {
@@ -124,13 +132,26 @@ impl PointRow {
 /// normals). Numbers in text are the shortest that read back as the same doubles.
 ///
 /// # Errors
-/// Those of `out`, and for GLB a position beyond single precision: [`io::ErrorKind::InvalidInput`].
+/// Those of `out`, and [`io::ErrorKind::InvalidInput`] for what the format cannot hold: in GLB positions beyond single
+/// precision, in PLY indices beyond 2^31.
 pub fn write_points(format: PointFormat, rows: &[PointRow], out: &mut dyn io::Write) -> io::Result<()> {
-    let mut fields = default_fields(rows);
-    if format == PointFormat::Xyz {
-        fields.truncate(1);
+    /// Rows whose fields are there at once.
+    const ROWS: usize = 1 << 16;
+    let fields = |rows: &[PointRow]| {
+        let mut fields = default_fields(rows);
+        if format == PointFormat::Xyz {
+            fields.truncate(1);
+        }
+        fields
+    };
+    if !format.takes_blocks() {
+        return write_fields(format, &fields(rows), out);
     }
-    write_fields(format, &fields, out)
+    let mut writer = PointWriter::new(format, &fields(&[]), rows.len(), out)?;
+    for rows in rows.chunks(ROWS) {
+        writer.write(&fields(rows))?;
+    }
+    writer.finish().map(drop)
 }
 
 /// Writes fields, the first of which is the position, as far as the format holds them: NPY positions, OBJ positions,
@@ -138,18 +159,18 @@ pub fn write_points(format: PointFormat, rows: &[PointRow], out: &mut dyn io::Wr
 /// positions), the others all.
 ///
 /// # Errors
-/// As [`write_points`].
+/// As [`write_points`], and where fields have different numbers of points.
 pub fn write_fields(format: PointFormat, fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
     match format {
-        PointFormat::Ply => ply::write(fields, ply::BINARY, out),
-        PointFormat::PlyAscii => ply::write(fields, ply::ASCII, out),
-        PointFormat::Xyz => text::write_xyz(fields, out),
-        PointFormat::Csv => text::write_csv(fields, out),
-        PointFormat::Npy => npy::write(fields, out),
         PointFormat::Npz => npz::write(fields, out),
-        PointFormat::Json => json::write(fields, out),
         PointFormat::Obj => text::write_obj(fields, out),
         PointFormat::Glb => glb::write(fields, out),
+        _ => {
+            let count = fields.first().map_or(0, Field::point_count);
+            let mut writer = PointWriter::new(format, fields, count, out)?;
+            writer.write(fields)?;
+            writer.finish().map(drop)
+        }
     }
 }
 
@@ -304,5 +325,7 @@ impl Points {
     }
 }
 
+#[cfg(test)]
+mod stream_tests;
 #[cfg(test)]
 mod tests;

@@ -2,19 +2,19 @@
 //! readers at hand allocate what it claims.
 
 use std::io;
+use std::ops::Range;
 
 use glam::DVec3;
 
+use crate::io::points::stream::invalid;
 use crate::io::points::{Field, PointPlace, Points, PointsError, field};
 
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 
-pub(super) fn write(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
-    let positions = field::reals(fields, "position", 3).unwrap_or_default();
-    write_head("<f8", &[positions.len() / 3, 3], out)?;
-    for x in positions {
-        out.write_all(&x.to_le_bytes())?;
-    }
+pub(super) fn write_rows(fields: &[Field], points: Range<usize>, bytes: &mut Vec<u8>) -> io::Result<()> {
+    let positions = field::reals(fields, "position", 3)
+        .ok_or_else(|| invalid("NPY holds positions, of which there are none".to_owned()))?;
+    bytes.extend(positions[3 * points.start..3 * points.end].iter().flat_map(|x| x.to_le_bytes()));
     Ok(())
 }
 

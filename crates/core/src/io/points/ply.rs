@@ -1,7 +1,8 @@
 //! Points as PLY.
 
-use std::collections::BTreeMap;
-use std::io;
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+use std::ops::Range;
 
 use glam::DVec3;
 use ply_rs_bw::parser::{Parser, Reader};
@@ -13,17 +14,23 @@ use ply_rs_bw::writer::Writer;
 
 use crate::io::ply::first_line;
 use crate::io::points::field::{origin_number, unique};
+use crate::io::points::stream::invalid;
 use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError, Precision};
 
 pub(super) const BINARY: Encoding = Encoding::BinaryLittleEndian;
 pub(super) const ASCII: Encoding = Encoding::Ascii;
 
-pub(super) fn write(fields: &[Field], encoding: Encoding, mut out: &mut dyn io::Write) -> io::Result<()> {
+pub(super) fn write_head(
+    fields: &[Field],
+    count: usize,
+    encoding: Encoding,
+    mut out: &mut dyn Write,
+) -> io::Result<()> {
     let mut vertex = ElementDef::new("vertex".to_owned());
-    vertex.count = fields.first().map_or(0, Field::point_count);
+    vertex.count = count;
     let mut header = Header::new();
     header.encoding = encoding;
-    let mut columns = BTreeMap::new();
+    let mut taken = BTreeSet::new();
     for field in fields {
         let scalar = match &field.data {
             FieldData::Real(_, Precision::Double) => ScalarType::Double,
@@ -40,7 +47,7 @@ pub(super) fn write(fields: &[Field], encoding: Encoding, mut out: &mut dyn io::
                 header.comments.push(format!("{} {index} {}", field.key, one_line(name)));
             }
         }
-        for (column, name) in field.columns.iter().enumerate() {
+        for name in &field.columns {
             // What other programs look for.
             let name = match (&*field.key, &**name) {
                 ("uv", "u") => "s".to_owned(),
@@ -48,24 +55,87 @@ pub(super) fn write(fields: &[Field], encoding: Encoding, mut out: &mut dyn io::
                 _ => property_name(name),
             };
             // Such as `s` beside texture coordinates.
-            let name = unique(name, |name| columns.contains_key(name));
+            let name = unique(name, |name| taken.contains(name));
             let property = PropertyDef::new(name.clone(), PropertyType::Scalar(scalar.clone()));
             vertex.properties.insert(name.clone(), property);
-            columns.insert(name, (field, column));
+            taken.insert(name);
         }
     }
     header.elements.insert(vertex.name.clone(), vertex.clone());
-    let writer = Writer::<Row<'_>>::new();
-    writer.write_header(&mut out, &header)?;
-    for point in 0..vertex.count {
-        let row = Row { columns: Some(&columns), point };
-        if encoding == ASCII {
-            writer.write_ascii_element(&mut out, &row, &vertex)?;
-        } else {
-            writer.write_little_endian_element(&mut out, &row, &vertex)?;
+    Writer::<Position>::new().write_header(&mut out, &header).map(drop)
+}
+
+/// Rows as the library would write them, which looks each value up by the name of its property.
+pub(super) fn write_binary_rows(
+    fields: &[Field],
+    range: Range<usize>,
+    bytes: &mut Vec<u8>,
+) -> io::Result<()> {
+    for point in range {
+        for field in fields {
+            let values = values(field, point);
+            match &field.data {
+                FieldData::Real(all, Precision::Double) => {
+                    bytes.extend(all[values].iter().flat_map(|x| x.to_le_bytes()));
+                }
+                FieldData::Real(all, Precision::Single) => {
+                    bytes.extend(all[values].iter().flat_map(|&x| (x as f32).to_le_bytes()));
+                }
+                FieldData::Id(all) => {
+                    for &id in &all[values] {
+                        bytes.extend(int(id)?.to_le_bytes());
+                    }
+                }
+                FieldData::Byte(all) => bytes.extend_from_slice(&all[values]),
+                FieldData::Name { ids, .. } => {
+                    for &id in &ids[values] {
+                        bytes.extend(name_number(id)?.to_le_bytes());
+                    }
+                }
+                FieldData::Origin(all) => bytes.extend(all[values].iter().map(|&o| origin_number(o))),
+            }
         }
     }
     Ok(())
+}
+
+/// As [`write_binary_rows`], a line a point.
+pub(super) fn write_ascii_rows(fields: &[Field], range: Range<usize>, bytes: &mut Vec<u8>) -> io::Result<()> {
+    for point in range {
+        let mut before = "";
+        for field in fields {
+            for value in values(field, point) {
+                bytes.extend_from_slice(before.as_bytes());
+                before = " ";
+                match &field.data {
+                    FieldData::Real(all, Precision::Double) => write!(bytes, "{}", all[value])?,
+                    FieldData::Real(all, Precision::Single) => write!(bytes, "{}", all[value] as f32)?,
+                    FieldData::Id(all) => write!(bytes, "{}", int(all[value])?)?,
+                    FieldData::Byte(all) => write!(bytes, "{}", all[value])?,
+                    FieldData::Name { ids, .. } => write!(bytes, "{}", name_number(ids[value])?)?,
+                    FieldData::Origin(all) => write!(bytes, "{}", origin_number(all[value]))?,
+                }
+            }
+        }
+        bytes.push(b'\n');
+    }
+    Ok(())
+}
+
+/// Where the values of a point are.
+fn values(field: &Field, point: usize) -> Range<usize> {
+    let width = field.columns.len();
+    point * width..(point + 1) * width
+}
+
+fn int(id: u32) -> io::Result<i32> {
+    i32::try_from(id)
+        .map_err(|_| invalid(format!("PLY cannot hold the index {id}: the largest is {}", i32::MAX)))
+}
+
+/// -1 for none, as is the habit.
+fn name_number(id: Option<u32>) -> io::Result<i32> {
+    id.map_or(Ok(-1), int)
 }
 
 /// A name that a comment of one line can hold, in UTF-8: readers pass over comments.
@@ -86,56 +156,6 @@ fn property_name(name: &str) -> String {
             }
         })
         .collect()
-}
-
-/// A point to be written; the library's trait asks for an empty one too.
-struct Row<'a> {
-    columns: Option<&'a BTreeMap<String, (&'a Field, usize)>>,
-    point: usize,
-}
-
-impl<'a> Row<'a> {
-    /// The values of a property, and the place of this point's among them.
-    fn find(&self, name: &str) -> Option<(&'a FieldData, usize)> {
-        let (field, column) = self.columns?.get(name)?;
-        Some((&field.data, self.point * field.columns.len() + column))
-    }
-}
-
-impl PropertyAccess for Row<'_> {
-    fn new() -> Self {
-        Self { columns: None, point: 0 }
-    }
-
-    fn get_double(&self, name: &str) -> Option<f64> {
-        match self.find(name)? {
-            (FieldData::Real(values, _), place) => values.get(place).copied(),
-            _ => None,
-        }
-    }
-
-    fn get_float(&self, name: &str) -> Option<f32> {
-        self.get_double(name).map(|value| value as f32)
-    }
-
-    fn get_int(&self, name: &str) -> Option<i32> {
-        match self.find(name)? {
-            (FieldData::Id(ids), place) => i32::try_from(*ids.get(place)?).ok(),
-            // -1 for none, as is the habit.
-            (FieldData::Name { ids, .. }, place) => {
-                ids.get(place)?.map_or(Some(-1), |id| i32::try_from(id).ok())
-            }
-            _ => None,
-        }
-    }
-
-    fn get_uchar(&self, name: &str) -> Option<u8> {
-        match self.find(name)? {
-            (FieldData::Byte(values), place) => values.get(place).copied(),
-            (FieldData::Origin(origins), place) => origins.get(place).copied().map(origin_number),
-            _ => None,
-        }
-    }
 }
 
 pub(super) fn read(bytes: &[u8], points: &mut Points) -> Result<(), PointsError> {

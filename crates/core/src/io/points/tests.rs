@@ -85,7 +85,7 @@ fn names() {
 }
 
 /// Two points with every kind of field.
-fn fields() -> Vec<Field> {
+pub(super) fn fields() -> Vec<Field> {
     let real = |key: &str, columns: &[&str], values: &[f64], precision| {
         Field::new(key, columns, FieldData::Real(values.to_vec(), precision))
     };

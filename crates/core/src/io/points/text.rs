@@ -1,54 +1,75 @@
 //! Points as lines of text: XYZ, CSV, OBJ.
 
 use std::borrow::Cow;
-use std::io;
+use std::io::{self, Write};
+use std::ops::Range;
 
 use glam::DVec3;
 
 use crate::io::points::field::{self, origin_name};
 use crate::io::points::{Field, FieldData, PointPlace, Points, PointsError};
 
-pub(super) fn write_xyz(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
-    let numbers: Vec<&Field> = fields
-        .iter()
-        .filter(|field| !matches!(field.data, FieldData::Name { .. } | FieldData::Origin(_)))
-        .collect();
+pub(super) fn write_xyz_head(fields: &[Field], out: &mut dyn Write) -> io::Result<()> {
+    let numbers = numbers(fields);
     if numbers.len() > 1 {
         let columns: Vec<&str> = numbers.iter().flat_map(|f| &f.columns).map(String::as_str).collect();
         writeln!(out, "# {}", columns.join(" "))?;
     }
-    write_rows(&numbers, " ", "nan", out)
+    Ok(())
 }
 
-pub(super) fn write_csv(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
+pub(super) fn write_xyz_rows(fields: &[Field], range: Range<usize>, bytes: &mut Vec<u8>) -> io::Result<()> {
+    write_rows(&numbers(fields), range, [" ", "nan"], bytes)
+}
+
+/// The fields that a file of numbers can hold.
+fn numbers(fields: &[Field]) -> Vec<&Field> {
+    let is_number = |field: &&Field| !matches!(field.data, FieldData::Name { .. } | FieldData::Origin(_));
+    fields.iter().filter(is_number).collect()
+}
+
+pub(super) fn write_csv_head(fields: &[Field], out: &mut dyn Write) -> io::Result<()> {
     let columns: Vec<_> = fields.iter().flat_map(|field| &field.columns).map(|name| quoted(name)).collect();
-    writeln!(out, "{}", columns.join(","))?;
-    write_rows(&fields.iter().collect::<Vec<_>>(), ",", "", out)
+    writeln!(out, "{}", columns.join(","))
+}
+
+pub(super) fn write_csv_rows(fields: &[Field], range: Range<usize>, bytes: &mut Vec<u8>) -> io::Result<()> {
+    write_rows(&fields.iter().collect::<Vec<_>>(), range, [",", ""], bytes)
 }
 
 /// A line for each point; `none` stands for a number that is none.
-fn write_rows(fields: &[&Field], separator: &str, none: &str, out: &mut dyn io::Write) -> io::Result<()> {
-    for point in 0..fields.first().map_or(0, |field| field.point_count()) {
+fn write_rows(
+    fields: &[&Field],
+    points: Range<usize>,
+    [separator, none]: [&str; 2],
+    out: &mut Vec<u8>,
+) -> io::Result<()> {
+    for point in points {
         let mut before = "";
         for field in fields {
             let width = field.columns.len();
             for index in point * width..(point + 1) * width {
-                out.write_all(before.as_bytes())?;
+                out.extend_from_slice(before.as_bytes());
                 before = separator;
                 match &field.data {
-                    FieldData::Real(values, _) if values[index].is_nan() => write!(out, "{none}")?,
+                    FieldData::Real(values, _) if values[index].is_nan() => {
+                        out.extend_from_slice(none.as_bytes());
+                    }
                     FieldData::Real(values, _) => write!(out, "{:?}", values[index])?,
                     FieldData::Id(values) => write!(out, "{}", values[index])?,
                     FieldData::Byte(values) => write!(out, "{}", values[index])?,
                     FieldData::Name { names, ids } => {
                         let name = ids[index].and_then(|id| names.get(id as usize));
-                        write!(out, "{}", name.map_or(none.into(), |name| quoted(name)))?;
+                        let name = name.map_or(none.into(), |name| quoted(name));
+                        out.extend_from_slice(name.as_bytes());
                     }
-                    FieldData::Origin(origins) => write!(out, "{}", origin_name(origins[index]))?,
+                    FieldData::Origin(origins) => {
+                        out.extend_from_slice(origin_name(origins[index]).as_bytes());
+                    }
                 }
             }
         }
-        writeln!(out)?;
+        out.push(b'\n');
     }
     Ok(())
 }
@@ -62,7 +83,7 @@ fn quoted(name: &str) -> Cow<'_, str> {
     }
 }
 
-pub(super) fn write_obj(fields: &[Field], out: &mut dyn io::Write) -> io::Result<()> {
+pub(super) fn write_obj(fields: &[Field], out: &mut dyn Write) -> io::Result<()> {
     let colors = field::colors(fields);
     for (index, p) in field::reals(fields, "position", 3).unwrap_or_default().chunks_exact(3).enumerate() {
         write!(out, "v {:?} {:?} {:?}", p[0], p[1], p[2])?;
