@@ -19,7 +19,10 @@ pub(crate) fn rows(bench: &mut Bench) -> Outcome<Vec<Row>> {
         let (ours, theirs) = (folder.path().join("ours.ply"), folder.path().join("theirs.ply"));
         let mut wrap = || {
             let mut command = Command::new(&program);
-            seconds_of(command.arg("wrap").arg(&bench.file).args(["-n", COUNT, "-o"]).arg(&ours))
+            // The script computes and prints nothing beside the points either.
+            seconds_of(
+                command.args(["wrap", "--quiet"]).arg(&bench.file).args(["-n", COUNT, "-o"]).arg(&ours),
+            )
         };
         let mut script = || {
             let mut command = Command::new(python);

@@ -48,12 +48,17 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     let mut taking = Taking::new(&ground, file.transpose()?, held);
     let run = ground.run_into(&stages, |block| taking.take(block, &stages))?;
     let taken = taking.finish(&stages)?;
-    stages.begin("irregularity", 0);
-    let irregularity = run.irregularity();
+    // R takes as long as equalizing does, so only where somebody reads it.
+    let irregularity = (!quiet || outputs.report.is_some()).then(|| {
+        stages.begin("irregularity", 0);
+        run.irregularity()
+    });
     let job = Job { ground: &ground, run: &run, irregularity };
     let files = write(job, taken, &outputs, &stages)?;
-    for line in summary(job) {
-        stages.say(&line);
+    if let Some(irregularity) = irregularity {
+        for line in summary(job, irregularity) {
+            stages.say(&line);
+        }
     }
     for file in files {
         stages.say(&format!("wrote {}", file.display()));
@@ -66,7 +71,8 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
 struct Job<'a> {
     ground: &'a Ground,
     run: &'a Streamed,
-    irregularity: Irregularity,
+    /// Where it is wanted.
+    irregularity: Option<Irregularity>,
 }
 
 fn write(job: Job<'_>, taken: Taken, wanted: &WrapOutputs, stages: &Stages) -> anyhow::Result<Vec<PathBuf>> {
@@ -94,7 +100,7 @@ fn write(job: Job<'_>, taken: Taken, wanted: &WrapOutputs, stages: &Stages) -> a
         Judge::new(mesh, points.len(), stages).quality(&points, stages)
     });
     let seconds = stages.finish();
-    if let Some(destination) = &wanted.report {
+    if let (Some(destination), Some(irregularity)) = (&wanted.report, irregularity) {
         let report = Report::new(
             MeshReport::new(mesh, repaired),
             options,
@@ -109,8 +115,8 @@ fn write(job: Job<'_>, taken: Taken, wanted: &WrapOutputs, stages: &Stages) -> a
     outputs.commit()
 }
 
-fn summary(job: Job<'_>) -> Vec<String> {
-    let Job { ground: Ground { input: Input { name, mesh, .. }, .. }, run, irregularity } = job;
+fn summary(job: Job<'_>, irregularity: Irregularity) -> Vec<String> {
+    let Job { ground: Ground { input: Input { name, mesh, .. }, .. }, run, .. } = job;
     let Irregularity { bound, refined, exact, undecided } = irregularity;
     let Correction { projected, removed } = run.correction;
     let count = run.count;
