@@ -106,7 +106,7 @@ impl<'a> Report<'a> {
             strips: run.strips.strips.iter().map(|strip| strip_report(strip, run.tolerance)).collect(),
             open_border: open_border(area, run),
             points: PointsReport {
-                count: run.count,
+                count: run.samples,
                 d_m: run.d_m,
                 projected: run.correction.projected,
                 removed: run.correction.removed,

@@ -108,7 +108,7 @@ impl Options {
 
 /// The value of every stage.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct Run<S = Vec<Sample>> {
     /// Which triangles form a segment.
     pub segmentation: Segmentation,
     /// The segments in the plane.
@@ -123,55 +123,33 @@ pub struct Run {
     pub d_m: f64,
     /// Cuts whose gap is at most this were closed, in units of the mesh.
     pub tolerance: f64,
-    /// The points.
-    pub samples: Vec<Sample>,
+    /// The points; where they were handed on, how many there were.
+    pub samples: S,
 }
 
-impl Run {
+/// The value of every stage but the points, which were handed on.
+pub type Streamed = Run<usize>;
+
+impl<S> Run<S> {
     /// The irregularity ratios at the distance of the points (paper, 4.3). No stage needs them, so they are computed
     /// when asked for; see [`irregularity()`](irregularity()) for the cost.
     pub fn irregularity(&self) -> Irregularity {
         irregularity(&self.strips, self.d_m, self.tolerance)
     }
 
+    /// The same with others in place of the points, and those.
+    fn with<T>(self, samples: T) -> (Run<T>, S) {
+        let Self { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples: before } =
+            self;
+        (Run { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples }, before)
+    }
+}
+
+impl Run {
     /// The points apart from all else.
     pub fn split(self) -> (Streamed, Vec<Sample>) {
-        let Self { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples } = self;
-        let count = samples.len();
-        (Streamed { segmentation, strips, domain, correction, equalize, d_m, tolerance, count }, samples)
-    }
-}
-
-/// The value of every stage but the points, which were handed on; the fields are those of [`Run`].
-#[derive(Clone, Debug)]
-pub struct Streamed {
-    /// Which triangles form a segment.
-    pub segmentation: Segmentation,
-    /// The segments in the plane.
-    pub strips: Strips,
-    /// Where the strips lie.
-    pub domain: PlanarDomain,
-    /// What wrapping and the correction did.
-    pub correction: Correction,
-    /// What equalizing did, if it was asked for.
-    pub equalize: Option<EqualizeReport>,
-    /// The mean distance between neighbours.
-    pub d_m: f64,
-    /// Cuts whose gap is at most this were closed.
-    pub tolerance: f64,
-    /// How many points there were.
-    pub count: usize,
-}
-
-impl Streamed {
-    /// As [`Run::irregularity`].
-    pub fn irregularity(&self) -> Irregularity {
-        irregularity(&self.strips, self.d_m, self.tolerance)
-    }
-
-    fn with(self, samples: Vec<Sample>) -> Run {
-        let Self { segmentation, strips, domain, correction, equalize, d_m, tolerance, count: _ } = self;
-        Run { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples }
+        let count = self.samples.len();
+        self.with(count)
     }
 }
 
@@ -269,7 +247,7 @@ pub fn run_weighted(
     let made: Result<_, OptionsError> =
         stages(mesh, density, options, progress, |points| Ok(points.into_samples()));
     let (streamed, samples) = made?;
-    Ok(streamed.with(samples))
+    Ok(streamed.with(samples).0)
 }
 
 /// As [`run_weighted`], but the points are handed on in blocks of some 100,000, in their order, as they are made: never are
@@ -289,7 +267,7 @@ pub fn run_weighted(
 ///     sum += block.samples.iter().map(|s| mesh.locate(&s.point)).sum::<glam::DVec3>() / block.count as f64;
 ///     Ok::<(), std::convert::Infallible>(())
 /// })?;
-/// assert_eq!(streamed.count, 300_000);
+/// assert_eq!(streamed.samples, 300_000);
 /// let (low, high) = mesh.bounds();
 /// assert!(sum.distance(0.5 * (low + high)) < 1e-3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -379,10 +357,10 @@ fn stages<R, E: From<OptionsError>>(
     if progress.is_cancelled() {
         return Err(OptionsError::Cancelled.into());
     }
-    let count = points.count();
+    let samples = points.count();
     let (made, correction) = finish(points)?;
     let (equalize, tolerance) = (equalized, tolerance * d_m);
-    let streamed = Streamed { segmentation, strips, domain, correction, equalize, d_m, tolerance, count };
+    let streamed = Run { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples };
     Ok((streamed, made))
 }
 

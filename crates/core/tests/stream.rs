@@ -25,7 +25,7 @@ fn streamed(mesh: &SurfaceMesh, density: &Density, options: &Options) -> (Run, u
         if samples.len() <= block.count { Ok(()) } else { Err(block.count) }
     })
     .expect("points");
-    assert_eq!(made.count, samples.len());
+    assert_eq!(made.samples, samples.len());
     let run = Run {
         segmentation: made.segmentation,
         strips: made.strips,
@@ -119,7 +119,7 @@ fn no_points_are_one_empty_block() {
         heard.push((block.samples.len(), block.count));
         Ok::<(), ()>(())
     });
-    assert_eq!(made.expect("a run").count, expected);
+    assert_eq!(made.expect("a run").samples, expected);
     assert_eq!(heard, [(expected, expected)]);
 }
 
@@ -137,7 +137,7 @@ fn a_sink_that_fails_stops_the_run_with_its_error() {
             calls += 1;
             if calls > most { Err("the disk is full") } else { Ok(()) }
         });
-        assert_eq!(failed.map(|made| made.count), Err(StreamError::Sink("the disk is full")));
+        assert_eq!(failed.map(|made| made.samples), Err(StreamError::Sink("the disk is full")));
         assert_eq!(calls, most + 1);
     }
 }
@@ -150,7 +150,7 @@ fn errors_come_before_any_block() {
         panic!("a block of points that cannot be made")
     });
     let expected = run_weighted(&mesh, &Density::UNIFORM, &options, &Silent).expect_err("refused");
-    assert_eq!(refused.map(|made| made.count), Err(StreamError::Options(expected)));
+    assert_eq!(refused.map(|made| made.samples), Err(StreamError::Options(expected)));
 }
 
 /// Cancels once a block was taken.
@@ -175,6 +175,6 @@ fn a_run_can_be_cancelled_between_blocks() {
         progress.0.store(true, std::sync::atomic::Ordering::Relaxed);
         Ok::<(), ()>(())
     });
-    assert_eq!(cancelled.map(|made| made.count), Err(StreamError::Options(OptionsError::Cancelled)));
+    assert_eq!(cancelled.map(|made| made.samples), Err(StreamError::Options(OptionsError::Cancelled)));
     assert_eq!(calls, 1);
 }

@@ -134,7 +134,7 @@ impl<'a> Plan<'a> {
             components: topology.components().count,
             area: number(input.mesh.area()),
             strips: run.strips.strips.len(),
-            points: run.count,
+            points: run.samples,
             d_m: number(run.d_m),
             irregularity: Ratios::of(&run.irregularity()),
             eta: eta.and_then(number),

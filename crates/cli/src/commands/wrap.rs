@@ -119,7 +119,7 @@ fn summary(job: Job<'_>, irregularity: Irregularity) -> Vec<String> {
     let Job { ground: Ground { input: Input { name, mesh, .. }, .. }, run, .. } = job;
     let Irregularity { bound, refined, exact, undecided } = irregularity;
     let Correction { projected, removed } = run.correction;
-    let count = run.count;
+    let count = run.samples;
     let mut lines = vec![
         format!(
             "{name}: {} on {} in {}, mean distance {:.4e}",

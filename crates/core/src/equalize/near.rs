@@ -39,6 +39,17 @@ fn reach(block: &Block) -> f64 {
     (REACH + SLACK) * block.distance
 }
 
+/// The ball in which the sites near a block are sought.
+fn ball(block: &Block) -> (DVec3, f64) {
+    let Bounds { middle, half } = block.bounds;
+    (middle.position, half.position.length() + reach(block))
+}
+
+/// The box outside of which no site is near any of some blocks.
+fn around(blocks: &[Block]) -> Corners {
+    blocks.iter().map(|block| block.bounds.widened(reach(block))).fold(NOTHING, join)
+}
+
 impl Near {
     pub(super) fn of_block(&self, block: usize) -> &[u32] {
         let start = if block == 0 { 0 } else { self.ends[block - 1] as usize };
@@ -56,16 +67,12 @@ impl Near {
         let pieces = parallel::map_chunks(layout.blocks.len(), CHUNK, |range| {
             let blocks = &layout.blocks[range];
             let mut close = Vec::new();
-            runs.leaves(
-                blocks.iter().map(|block| block.bounds.widened(reach(block))).fold(NOTHING, join),
-                &mut close,
-            );
+            runs.leaves(around(blocks), &mut close);
             let mut ends = Vec::with_capacity(blocks.len());
             let mut found = Vec::with_capacity(32 * blocks.len());
             for block in blocks {
                 let before = found.len();
-                let Bounds { middle, half } = block.bounds;
-                let mut ball = (middle.position, half.position.length() + reach(block));
+                let mut ball = ball(block);
                 let is_own = |i: usize| sites[i].patch == block.patch;
                 close.iter().for_each(|&leaf| runs.in_leaf(leaf, ball, &is_own, &mut found));
                 // Every patch with blocks has a site, so this ends.
@@ -112,22 +119,17 @@ impl Near {
         let runs = Runs::new(&places);
         const CHUNK: usize = 64;
         let pieces = parallel::map_chunks(layout.blocks.len(), CHUNK, |range| {
-            let blocks = range.clone().map(|i| &layout.blocks[i]);
             let mut close = Vec::new();
-            runs.leaves(
-                blocks.map(|block| block.bounds.widened(reach(block))).fold(NOTHING, join),
-                &mut close,
-            );
+            runs.leaves(around(&layout.blocks[range.clone()]), &mut close);
             let (mut ends, mut all, mut found) = (Vec::with_capacity(range.len()), Vec::new(), Vec::new());
             for i in range {
                 let block = &layout.blocks[i];
-                let ball = (block.bounds.middle.position, block.bounds.half.position.length() + reach(block));
                 let own = self.of_block(i);
                 let is_new = |k: usize| {
                     sites[strays[k] as usize].patch == block.patch && own.binary_search(&strays[k]).is_err()
                 };
                 found.clear();
-                close.iter().for_each(|&leaf| runs.in_leaf(leaf, ball, &is_new, &mut found));
+                close.iter().for_each(|&leaf| runs.in_leaf(leaf, ball(block), &is_new, &mut found));
                 let start = all.len();
                 all.extend_from_slice(own);
                 all.extend(found.iter().map(|&k| strays[k as usize]));

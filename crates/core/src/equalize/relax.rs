@@ -37,7 +37,8 @@ pub(super) struct Relaxed {
     pub(super) holdings: Holdings,
 }
 
-/// Moves the sites for a number of rounds; `near` lists them about where they are, `wanted` is the mass for each of them, `homes` says where they are due.
+/// Moves the sites for a number of rounds. `near` lists them about where they are, `wanted` is the mass for each of them,
+/// `homes` says where they are due.
 pub(super) fn relax(
     layout: &Layout,
     mut near: Near,
