@@ -8,6 +8,8 @@ mod balance;
 mod capacity;
 mod clip;
 mod diagram;
+mod facing;
+mod harmonics;
 mod holdings;
 mod laplacian;
 mod layout;
@@ -36,6 +38,7 @@ use crate::parallel;
 use crate::progress::Progress;
 use crate::sample::SurfacePoint;
 use balance::Item;
+use facing::face_evenly;
 use layout::{Due, Place, lay_out};
 use near::{Near, Site};
 use owners::diagram;
@@ -152,6 +155,7 @@ pub fn equalize(
     let relaxed = relax(&layout, near, start, &homes, &wanted, options.rounds, progress);
     let sides = Sides::new(mesh, strip_of_face, density, n);
     let mut settled = settle(&layout, &relaxed, sides.as_ref());
+    face_evenly(mesh, &layout, &relaxed, sides.as_ref(), &mut settled);
     spacing::make_way(&layout, &relaxed, sides.as_ref(), &mut settled);
     if let Some(options) = &options.for_views {
         views::choose(mesh, scale.middle, &layout, &relaxed, &mut settled, options, progress);

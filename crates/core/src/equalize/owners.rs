@@ -1,6 +1,6 @@
 //! What is asked of the power diagram: cells and borders, pieces.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::clip;
 use super::diagram::{Owners, Power, walk, walk_some};
@@ -16,6 +16,11 @@ pub(super) struct Cell {
 }
 
 impl Cell {
+    /// The mean position; of cells that are not empty.
+    pub(super) fn centroid(&self) -> DVec3 {
+        self.moment.position / self.mass
+    }
+
     pub(super) fn add(&mut self, moment: Place) {
         self.moment.position += moment.position;
         self.moment.normal += moment.normal;

@@ -90,7 +90,7 @@ fn close(diagram: &Diagram, wanted: &[f64]) -> bool {
 }
 
 fn to_centroid(site: &Site, cell: &Cell) -> DVec3 {
-    if cell.mass > 0.0 { cell.moment.position / cell.mass - site.place.position } else { DVec3::ZERO }
+    if cell.mass > 0.0 { cell.centroid() - site.place.position } else { DVec3::ZERO }
 }
 
 /// A cell with less than this share of its wanted mass is lost: its slope says nothing about how to regain it.
@@ -157,7 +157,7 @@ fn regain(sites: &mut [Site], homes: &[Place], diagram: &Diagram, wanted: &[f64]
 
 /// Puts a lost site into a heavy one's cell, on two sides of the centroid.
 fn halve(sites: &mut [Site], lost: usize, heavy: usize, cell: &Cell) {
-    let (centroid, normal) = (cell.moment.position / cell.mass, cell.moment.normal / cell.mass);
+    let (centroid, normal) = (cell.centroid(), cell.moment.normal / cell.mass);
     let aside = normal.try_normalize().unwrap_or(DVec3::Z).any_orthonormal_vector();
     let aside = aside * (0.3 * sites[heavy].distance);
     sites[lost] = sites[heavy];

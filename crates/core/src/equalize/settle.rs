@@ -19,7 +19,7 @@ pub(super) fn settle(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>) 
         if cell.mass <= 0.0 {
             return None;
         }
-        let centroid = cell.moment.position / cell.mass;
+        let centroid = cell.centroid();
         let may_stand = |holding: &&Holding| match (sides, &due) {
             (Some(sides), Some(due)) => due[site] == Some(sides.of(layout.tiles[holding.tile as usize].face)),
             _ => true,
@@ -40,11 +40,16 @@ fn nearest<'a>(layout: &Layout, tiles: impl Iterator<Item = &'a Holding>, wanted
         if a.distance_squared(wanted) > 2.0 * (least + side) {
             continue;
         }
-        let place = triangle::at(a, b, c, triangle::nearest(a, b, c, wanted));
+        let place = nearest_on([a, b, c], wanted);
         let distance = place.distance_squared(wanted);
         if distance < least {
             best = Some((distance, Spot { face: tile.face, place }));
         }
     }
     best.map(|(_, spot)| spot)
+}
+
+/// The place of a triangle that lies nearest to a wanted one.
+pub(super) fn nearest_on([a, b, c]: [DVec3; 3], wanted: DVec3) -> DVec3 {
+    triangle::at(a, b, c, triangle::nearest(a, b, c, wanted))
 }

@@ -103,8 +103,7 @@ fn move_aside(
             if short(now.place) == 0.0 {
                 continue;
             }
-            let cell = &relaxed.cells[i];
-            let centroid = cell.moment.position / cell.mass;
+            let centroid = relaxed.cells[i].centroid();
             let cost =
                 |spot: &Spot| attempt.weight * short(spot.place) + spot.place.distance_squared(centroid);
             let mut best = (cost(&now), now);

@@ -236,15 +236,19 @@ fn view_error(mesh: &SurfaceMesh, points: &[SurfacePoint]) -> f64 {
 fn places_for_views_serve_views_that_took_no_part() {
     let knot = mesh(&shapes::trefoil(96, 12, 0.3));
     let strips = vec![StripId(0); knot.face_count()];
-    let points = baseline::random(&knot, 80, 1);
-    let run = |for_views| {
-        let options = EqualizeOptions { for_views, ..EqualizeOptions::default() };
-        equalize(&knot, &points, &strips, &Density::UNIFORM, &options, &Silent)
-    };
-    let (plain, placed) = (run(None), run(Some(ForViews::default())));
-    let [before, after] = [&plain, &placed].map(|e| view_error(&knot, &e.points));
+    let (mut before, mut after) = (0.0, 0.0);
+    for seed in 1..=4 {
+        let points = baseline::random(&knot, 80, seed);
+        let run = |for_views| {
+            let options = EqualizeOptions { for_views, ..EqualizeOptions::default() };
+            equalize(&knot, &points, &strips, &Density::UNIFORM, &options, &Silent)
+        };
+        let (plain, placed) = (run(None), run(Some(ForViews { stay: 0.2, ..ForViews::default() })));
+        before += view_error(&knot, &plain.points);
+        after += view_error(&knot, &placed.points);
+        assert_eq!(placed.cells, plain.cells, "each point stays in its cell");
+    }
     assert!(after < 0.8 * before, "{after} after {before}");
-    assert_eq!(placed.cells, plain.cells, "each point stays in its cell");
 }
 
 #[test]
@@ -275,4 +279,23 @@ fn places_serve_the_cameras_that_were_asked_for() {
     let placed = run(Some(ForViews { cameras, stay: 0.05, views: Some(256), ..ForViews::default() }));
     let (before, after) = (error(&run(None)), error(&placed));
     assert!(after < 0.7 * before, "{after} after {before}");
+}
+
+/// As many points face every way as the share of the surface that does asks for: nearer than equal cells alone would have it.
+#[test]
+fn points_face_every_way_as_the_surface_does() {
+    let knot = mesh(&shapes::trefoil(192, 24, 0.3));
+    let (mut square, mut views) = (0.0, 0.0);
+    for seed in 1..=4 {
+        let points = equalized(&knot, &baseline::random(&knot, 150, seed), 5).points;
+        for view in baseline::spherical_fibonacci(200) {
+            let faces = |face: crate::ids::FaceId| knot.face_normal(face).dot(view) > 0.0;
+            let area: f64 = knot.topology().face_ids().filter(|&f| faces(f)).map(|f| knot.face_area(f)).sum();
+            let count = points.iter().filter(|p| faces(p.face)).count() as f64;
+            square += (count - 150.0 * area / knot.area()).powf(2.0);
+            views += 1.0;
+        }
+    }
+    // Standing next to the centroids they would be off by 7.4 points squared, 150 random ones by 37.
+    assert!(square / views < 4.5, "{}", square / views);
 }

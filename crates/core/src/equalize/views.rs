@@ -165,8 +165,7 @@ fn choices(
     let spots = spots(layout, relaxed, |site| own[site].is_some(), places, options.seed);
     parallel::map(own.len(), |site| {
         let Some(own) = own[site] else { return Vec::new() };
-        let cell = relaxed.cells[site];
-        let (centroid, distance) = (cell.moment.position / cell.mass, relaxed.sites[site].distance);
+        let (centroid, distance) = (relaxed.cells[site].centroid(), relaxed.sites[site].distance);
         let choice = |spot: &Spot| {
             let away = spot.place.distance_squared(centroid) / (distance * distance);
             Choice { spot: *spot, cost: options.stay * away }
