@@ -58,8 +58,10 @@ impl Picks {
         let bin = |pick: Pick| (mended.index(pick) >> shift) as usize;
         let counted = parallel::map_chunks(picked.len(), picked.len().div_ceil(COUNTS).max(1), |range| {
             let mut counts = vec![0_u64; bins];
-            for &pick in picked[range].iter().flatten() {
-                counts[bin(pick)] += 1;
+            for piece in &picked[range] {
+                for &pick in piece {
+                    counts[bin(pick)] += 1;
+                }
             }
             counts
         });

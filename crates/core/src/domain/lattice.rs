@@ -23,6 +23,8 @@ pub(super) struct Lattice {
     side: f64,
     /// base^digits.
     rows: u64,
+    /// Its reciprocal: the height of a row as a share of the side.
+    height: f64,
     digits: u32,
     /// The first number whose point is carried around in x.
     turn: u64,
@@ -49,7 +51,7 @@ impl Lattice {
                 turn = middle + 1;
             }
         }
-        Self { base, count, shift, side: domain.side, rows, digits, turn }
+        Self { base, count, shift, side: domain.side, rows, height: 1.0 / exact(rows), digits, turn }
     }
 
     pub(super) fn count(&self) -> u64 {
@@ -64,7 +66,7 @@ impl Lattice {
     }
 
     /// As [`place`](Self::place), of some points.
-    #[inline]
+    #[inline(always)]
     pub(super) fn places(&self, indices: &[u64; LANES]) -> [Lanes; 2] {
         let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
         if self.base == 2 {
@@ -93,7 +95,11 @@ impl Lattice {
     /// around.
     fn rows(&self, low: f64, high: f64) -> RangeInclusive<i64> {
         let rows = exact(self.rows);
-        let row = |y: f64| (((y / self.side).clamp(0.0, 1.0) - self.shift.y) * rows).floor() as i64;
+        let row = |y: f64| {
+            let at = ((y / self.side).clamp(0.0, 1.0) - self.shift.y) * rows;
+            // Rounded down.
+            at as i64 - i64::from(at < (at as i64) as f64)
+        };
         let margin = MARGIN * self.side;
         let last = self.rows as i64 - 1;
         row(low - margin)..=row(high + margin).min(last)
@@ -153,18 +159,18 @@ impl Lattice {
     #[inline]
     fn in_row(&self, row: i64, left: f64, right: f64, visit: &mut impl FnMut(u64)) {
         let residue = self.residue(if row < 0 { row + self.rows as i64 } else { row } as u64);
-        let (count, share) = (exact(self.count), 1.0 / exact(self.rows));
+        let count = exact(self.count);
         let (left, right) = (left.max(0.0), right.min(1.0));
-        let bottom = row as f64 * share + self.shift.y;
+        let bottom = row as f64 * self.height + self.shift.y;
         // A row that the torus cuts holds points of both sides.
-        let is_cut = if row < 0 { bottom < CUT } else { bottom + share > 1.0 - CUT };
+        let is_cut = if row < 0 { bottom < CUT } else { bottom + self.height > 1.0 - CUT };
         // What was carried around in x lies from 1 less the shift on.
         for (numbers, turn) in [(0..self.turn, -self.shift.x), (self.turn..self.count, 1.0 - self.shift.x)] {
             let (from, to) = (left + turn, right + turn);
             if numbers.is_empty() || from >= 1.0 || to < 0.0 {
                 continue;
             }
-            let steps = (from * count - exact(residue)) * share;
+            let steps = (from * count - exact(residue)) * self.height;
             let whole = steps as i64;
             let steps = (whole + i64::from((whole as f64) < steps)).max(0) as u64;
             let mut index = residue + steps * self.rows;

@@ -39,6 +39,7 @@ const NEEDLE: f64 = 1e-6;
 
 /// Barycentric coordinates of `p` in the triangle, clamped to it (never negative, sum 1).
 /// A triangle without area gives its first corner.
+#[inline]
 pub fn barycentric(a: DVec2, b: DVec2, c: DVec2, p: DVec2) -> [f64; 3] {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let area = ab.perp_dot(ac);
@@ -108,6 +109,7 @@ fn between(x: f64, most: f64) -> f64 {
 
 /// As [`barycentric`], where areas have no digits left: the place along the longest side counts, and rounding moves `p`
 /// across it alone, by less than the height.
+#[cold]
 fn in_needle(corners: [DVec2; 3], p: DVec2) -> [f64; 3] {
     let length = |i: usize| corners[i].distance_squared(corners[(i + 1) % 3]);
     let first = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j))).unwrap_or(0);

@@ -1,6 +1,5 @@
 //! One point for each region.
 
-use std::cmp::Ordering;
 use std::ops::Range;
 
 use crate::buckets::Buckets;
@@ -57,7 +56,7 @@ impl Stays {
         // What stays of a bucket if so many stayed before it and so many more are to.
         let stay = |bucket: usize, before: usize, more: usize| {
             let first = (next + bucket) * size;
-            Stay::of(|| candidates.runs(bucket), first..(first + size).min(count), before, more)
+            Stay::of(&candidates.to_vec(bucket), first..(first + size).min(count), before, more)
         };
         // As without a lack before any bucket, which holds for almost all of them.
         let mut stays = parallel::map(buckets, |bucket| stay(bucket, (next + bucket) * size, 0));
@@ -94,69 +93,53 @@ impl Stays {
 impl Stay {
     /// Of the candidates for some regions, if so many stayed before them; `more` of those that do not stay do so
     /// nevertheless, the last ones.
-    fn of<'a, I: Iterator<Item = &'a [Candidate]>>(
-        candidates: impl Fn() -> I,
-        regions: Range<usize>,
-        mut before: usize,
-        more: usize,
-    ) -> Self {
-        let (mut sorted, ends) = by_region(candidates, &regions);
+    fn of(candidates: &[Candidate], regions: Range<usize>, mut before: usize, more: usize) -> Self {
+        let own = |c: &Candidate| c.region as usize - regions.start;
+        let mut counts = vec![0_u32; regions.len()];
+        let mut best = vec![(u64::MAX, 0_u32); regions.len()];
+        for (at, c) in (0..).zip(candidates) {
+            let region = own(c);
+            counts[region] += 1;
+            let found = (c.rank(), at);
+            best[region] = if found.0 < best[region].0 { found } else { best[region] };
+        }
         let mut picks = Vec::with_capacity(regions.len());
-        let mut spare = Vec::new();
-        let mut start = 0;
-        for (region, end) in regions.zip(ends) {
-            let of_region = &mut sorted[start..end as usize];
-            start = end as usize;
-            let due = (region + 1).saturating_sub(before).min(of_region.len());
+        // Of a region that has more than its best candidate stay the number that do. There are few, but where all are
+        // to be looked at.
+        let mut several = vec![None; if more > 0 { regions.len() } else { 0 }];
+        for (region, &count) in counts.iter().enumerate() {
+            let due = (regions.start + region + 1).saturating_sub(before).min(count as usize);
             before += due;
-            // Mostly the most central one stays, and it does not matter what the others are.
             if due == 1 && more == 0 {
-                let nearer = |a, b| if order(b, a).is_lt() { b } else { a };
-                picks.extend(of_region.iter().reduce(nearer).map(|c| c.pick));
-            } else {
-                of_region.sort_by(order);
-                picks.extend(of_region[..due].iter().map(|c| c.pick));
-                if more > 0 {
-                    spare.extend(of_region[due..].iter().map(|c| c.pick));
-                }
+                picks.push(candidates[best[region].1 as usize].pick);
+            } else if due > 1 || (more > 0 && count > 0) {
+                several.resize(regions.len(), None);
+                several[region] = Some(due);
             }
         }
+        if several.is_empty() {
+            return Self { picks, of: candidates.len() };
+        }
+        let mut others: Vec<&Candidate> = candidates.iter().filter(|c| several[own(c)].is_some()).collect();
+        others.sort_by_key(|c| (c.region, c.rank()));
+        let mut spare = Vec::new();
+        for of_region in others.chunk_by(|a, b| a.region == b.region) {
+            let (stay, rest) = of_region.split_at(several[own(of_region[0])].unwrap_or(0));
+            picks.extend(stay.iter().map(|c| c.pick));
+            spare.extend(rest.iter().map(|c| c.pick));
+        }
         picks.extend_from_slice(&spare[spare.len() - more..]);
-        Self { picks, of: sorted.len() }
+        Self { picks, of: candidates.len() }
     }
 }
 
-/// The most central first, then by face; those of a face stay as they came.
-fn order(a: &Candidate, b: &Candidate) -> Ordering {
-    a.off.total_cmp(&b.off).then(a.pick.face.cmp(&b.pick.face))
-}
-
-/// Candidates region after region, and where those of each region end.
-fn by_region<'a, I: Iterator<Item = &'a [Candidate]>>(
-    candidates: impl Fn() -> I,
-    regions: &Range<usize>,
-) -> (Vec<Candidate>, Vec<u32>) {
-    let mut cursor = vec![0_u32; regions.len() + 1];
-    for run in candidates() {
-        for c in run {
-            cursor[c.region as usize - regions.start + 1] += 1;
-        }
+impl Candidate {
+    /// The most central one of a region is the least, then that of the first face; those of a face stay as they came.
+    #[inline]
+    fn rank(&self) -> u64 {
+        // Numbers from 0 up are in the order of their bits.
+        u64::from(self.off.to_bits()) << 32 | u64::from(self.pick.face.0)
     }
-    for region in 0..regions.len() {
-        cursor[region + 1] += cursor[region];
-    }
-    let Some(any) = candidates().flatten().next() else { return (Vec::new(), cursor) };
-    let mut sorted = vec![*any; cursor[regions.len()] as usize];
-    for run in candidates() {
-        for c in run {
-            let slot = &mut cursor[c.region as usize - regions.start];
-            sorted[*slot as usize] = *c;
-            *slot += 1;
-        }
-    }
-    // Each cursor stands where the next region starts.
-    cursor.pop();
-    (sorted, cursor)
 }
 
 #[cfg(test)]

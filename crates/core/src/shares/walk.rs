@@ -243,10 +243,11 @@ impl Walk {
                 passed[lane] = 2 * passed[lane] - second;
             }
         }
-        let parts = f64::from(1_u32 << depth);
+        // A power of two, so this is exact.
+        let part = 1.0 / f64::from(1_u32 << depth);
         let mut shares = [0.0; LANES];
         for lane in 0..LANES {
-            shares[lane] = (f64::from(passed[lane]) + 0.5) / parts;
+            shares[lane] = (f64::from(passed[lane]) + 0.5) * part;
         }
         shares
     }
