@@ -115,6 +115,8 @@ impl Lattice {
     ) {
         /// Points that are held back so that lanes are full.
         const HELD: usize = 16 * LANES;
+        /// As many points as a row of a triangle has, or more.
+        const TOGETHER: usize = 8;
         let mut look = |indices: &[u64]| {
             for some in indices.chunks(LANES) {
                 let mut lanes = [some[0]; LANES];
@@ -123,13 +125,23 @@ impl Lattice {
             }
         };
         let (mut held, mut count) = ([0; HELD], 0);
-        let mut hold = |index| {
-            if count == HELD {
-                look(&held);
-                count = 0;
+        let mut hold = |mut index: u64, mut points: u64| {
+            while points > 0 {
+                if count + TOGETHER > HELD {
+                    let whole = count - count % LANES;
+                    look(&held[..whole]);
+                    held.copy_within(whole..count, 0);
+                    count -= whole;
+                }
+                // All of them whether they are points of the row or not: how many are is not foreseen.
+                for (held, nth) in held[count..count + TOGETHER].iter_mut().zip(0..) {
+                    *held = index + nth * self.rows;
+                }
+                let some = points.min(TOGETHER as u64);
+                count += some as usize;
+                index += some * self.rows;
+                points -= some;
             }
-            held[count] = index;
-            count += 1;
         };
         let bands = Bands::new(corners);
         let height = self.side / exact(self.rows);
@@ -155,9 +167,9 @@ impl Lattice {
         look(&held[..count]);
     }
 
-    /// The points of a row between two x, as shares of the side, each once.
+    /// The points of a row between two x, as shares of the side, each once: `hold` hears the first and how many there are.
     #[inline]
-    fn in_row(&self, row: i64, left: f64, right: f64, visit: &mut impl FnMut(u64)) {
+    fn in_row(&self, row: i64, left: f64, right: f64, hold: &mut impl FnMut(u64, u64)) {
         let residue = self.residue(if row < 0 { row + self.rows as i64 } else { row } as u64);
         let count = exact(self.count);
         let (left, right) = (left.max(0.0), right.min(1.0));
@@ -178,9 +190,13 @@ impl Lattice {
             while index < numbers.start {
                 index += self.rows;
             }
-            while index < end {
-                if !is_cut || (self.moved(index).y >= 1.0) == (row < 0) {
-                    visit(index);
+            if !is_cut && index < end {
+                let further = end - 1 - index;
+                hold(index, 1 + if self.base == 2 { further >> self.digits } else { further / self.rows });
+            }
+            while is_cut && index < end {
+                if (self.moved(index).y >= 1.0) == (row < 0) {
+                    hold(index, 1);
                 }
                 index += self.rows;
             }
