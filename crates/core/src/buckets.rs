@@ -30,23 +30,24 @@ impl<T: Copy + Send + Sync> Buckets<T> {
         count: usize,
         bucket: impl Fn(&T) -> usize + Sync + Send,
     ) -> Self {
-        let sorted = parallel::map(pieces, |piece| with_runs(sorted(make(piece), &bucket), &bucket));
+        let sorted = parallel::map(pieces, |piece| sorted(make(piece), &bucket));
         Self::of_sorted(sorted, count)
     }
 
     /// As [`new`](Self::new), of pieces that are there.
     pub(crate) fn of_pieces(
-        mut pieces: Vec<Vec<T>>,
+        pieces: Vec<Vec<T>>,
         count: usize,
         bucket: impl Fn(&T) -> usize + Sync + Send,
     ) -> Self {
-        parallel::change_chunks(&mut pieces, 1, |_, piece| {
-            for items in piece {
-                *items = sorted(std::mem::take(items), &bucket);
+        // Piece by piece, so that never both are there.
+        let mut pieces: Vec<(Vec<T>, Runs)> = pieces.into_iter().map(|items| (items, Runs::new())).collect();
+        parallel::change_chunks(&mut pieces, 1, |_, pieces| {
+            for piece in pieces {
+                *piece = sorted(std::mem::take(&mut piece.0), &bucket);
             }
         });
-        let sorted = pieces.into_iter().map(|items| with_runs(items, &bucket)).collect();
-        Self::of_sorted(sorted, count)
+        Self::of_sorted(pieces, count)
     }
 
     fn of_sorted(sorted: Vec<Sorted<T>>, count: usize) -> Self {
@@ -81,60 +82,77 @@ impl<T: Copy + Send + Sync> Buckets<T> {
 
     /// The items of a bucket, piece after piece.
     pub(crate) fn bucket(&self, bucket: usize) -> impl Iterator<Item = &T> {
-        let runs = &self.runs[self.starts[bucket] as usize..self.starts[bucket + 1] as usize];
-        runs.iter().flat_map(|run| &self.pieces[run.piece as usize][run.start as usize..run.end as usize])
+        self.runs(bucket).flatten()
     }
 
-    /// All items by their keys, which must rise from bucket to bucket.
-    pub(crate) fn by_key<K: Ord + Copy + Send>(&self, key: impl Fn(&T) -> K + Sync + Send) -> Vec<&T> {
-        parallel::map(self.count(), |bucket| {
-            let mut keyed: Vec<(K, &T)> = self.bucket(bucket).map(|item| (key(item), item)).collect();
-            keyed.sort_unstable_by_key(|(key, _)| *key);
-            keyed.into_iter().map(|(_, item)| item).collect::<Vec<&T>>()
-        })
-        .concat()
+    /// The same in slices.
+    pub(crate) fn runs(&self, bucket: usize) -> impl Iterator<Item = &[T]> {
+        let runs = &self.runs[self.starts[bucket] as usize..self.starts[bucket + 1] as usize];
+        runs.iter().map(|run| &self.pieces[run.piece as usize][run.start as usize..run.end as usize])
+    }
+
+    /// Copies of the items of a bucket.
+    pub(crate) fn to_vec(&self, bucket: usize) -> Vec<T> {
+        let mut items = Vec::with_capacity(self.runs(bucket).map(<[T]>::len).sum());
+        self.runs(bucket).for_each(|run| items.extend_from_slice(run));
+        items
     }
 }
 
-/// Items in the order of their buckets, and each bucket with its run of them.
-type Sorted<T> = (Vec<T>, Vec<(usize, Range<u32>)>);
+/// Buckets that have items, each with its run of them.
+type Runs = Vec<(usize, Range<u32>)>;
 
-fn with_runs<T>(items: Vec<T>, bucket: impl Fn(&T) -> usize) -> Sorted<T> {
-    let mut runs = Vec::new();
-    let mut start = 0;
-    for run in items.chunk_by(|a, b| bucket(a) == bucket(b)) {
-        runs.push((bucket(&run[0]), start as u32..(start + run.len()) as u32));
-        start += run.len();
+/// Items in the order of their buckets.
+type Sorted<T> = (Vec<T>, Runs);
+
+/// Items by their buckets, those of one in the order they had.
+fn sorted<T: Copy>(mut items: Vec<T>, bucket: impl Fn(&T) -> usize) -> Sorted<T> {
+    let mut buckets: Vec<u32> = items.iter().map(|item| bucket(item) as u32).collect();
+    if !buckets.is_sorted() {
+        let low = buckets.iter().fold(u32::MAX, |low, &b| low.min(b)) as usize;
+        let high = buckets.iter().fold(0, |high, &b| high.max(b)) as usize;
+        // Counting is faster as long as the counters are not many more than the items.
+        if high - low > 4 * items.len() {
+            items.sort_by_key(&bucket);
+            buckets.sort_unstable();
+            return (items, runs(&buckets));
+        }
+        let mut cursor = vec![0u32; high - low + 2];
+        for &b in &buckets {
+            cursor[b as usize - low + 1] += 1;
+        }
+        for b in 1..cursor.len() {
+            cursor[b] += cursor[b - 1];
+        }
+        let mut placed = items.clone();
+        for (item, &b) in items.iter().zip(&buckets) {
+            let slot = &mut cursor[b as usize - low];
+            placed[*slot as usize] = *item;
+            *slot += 1;
+        }
+        // Each cursor stands where the next bucket starts.
+        let ends = cursor[..=high - low].iter();
+        let mut start = 0;
+        let runs = ends.zip(low..).filter_map(|(&end, bucket)| {
+            let run = start..end;
+            start = end;
+            (!run.is_empty()).then_some((bucket, run))
+        });
+        return (placed, runs.collect());
     }
+    let runs = runs(&buckets);
     (items, runs)
 }
 
-/// Items by their buckets, those of one in the order they had.
-fn sorted<T: Copy>(mut items: Vec<T>, bucket: impl Fn(&T) -> usize) -> Vec<T> {
-    if items.is_sorted_by_key(&bucket) {
-        return items;
-    }
-    let (low, high) =
-        items.iter().map(&bucket).fold((usize::MAX, 0), |(low, high), b| (low.min(b), high.max(b)));
-    // Counting is faster as long as the counters are not many more than the items.
-    if high - low > 4 * items.len() {
-        items.sort_by_key(bucket);
-        return items;
-    }
-    let mut cursor = vec![0u32; high - low + 2];
-    for item in &items {
-        cursor[bucket(item) - low + 1] += 1;
-    }
-    for b in 1..cursor.len() {
-        cursor[b] += cursor[b - 1];
-    }
-    let mut placed = items.clone();
-    for item in &items {
-        let slot = &mut cursor[bucket(item) - low];
-        placed[*slot as usize] = *item;
-        *slot += 1;
-    }
-    placed
+/// The runs of buckets in order.
+fn runs(buckets: &[u32]) -> Runs {
+    let mut start = 0;
+    let run = |run: &[u32]| {
+        let first = start;
+        start += run.len() as u32;
+        (run[0] as usize, first..start)
+    };
+    buckets.chunk_by(|a, b| a == b).map(run).collect()
 }
 
 #[cfg(test)]
@@ -158,8 +176,8 @@ mod tests {
             let found: Vec<_> = (0..buckets.count()).flat_map(|b| buckets.bucket(b)).copied().collect();
             prop_assert_eq!(&found, &expected);
             prop_assert_eq!(buckets.len(), items.len());
-            let by_key: Vec<_> = buckets.by_key(|item| *item).into_iter().copied().collect();
-            prop_assert_eq!(by_key, expected);
+            let copies: Vec<_> = (0..buckets.count()).flat_map(|b| buckets.to_vec(b)).collect();
+            prop_assert_eq!(copies, expected);
         }
     }
 }

@@ -9,12 +9,14 @@ mod seams;
 
 use std::borrow::Cow;
 use std::convert::Infallible;
+use std::ops::Range;
 
 use glam::DVec2;
 
 use crate::domain::{DomainPoints, PlanarDomain};
 use crate::geometry::plane;
 use crate::ids::{FaceId, HalfedgeId, StripId};
+use crate::lanes::{LANES, Lanes};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::sample::{Origin, Sample, SurfacePoint};
@@ -34,18 +36,10 @@ pub struct Correction {
 }
 
 impl Correction {
-    /// Counts what was done to these too.
-    pub(crate) fn add(&mut self, corrected: &[&Corrected]) {
-        let counted = parallel::map_chunks(corrected.len(), 1 << 16, |range| {
-            corrected[range].iter().fold((0, 0), |(projected, removed), c| {
-                let is_projected = usize::from(c.sample.origin == Origin::Projected);
-                (projected + is_projected, removed + c.copies_removed as usize)
-            })
-        });
-        for (projected, removed) in counted {
-            self.projected += projected;
-            self.removed += removed;
-        }
+    /// Counts what was done to others too.
+    pub(crate) fn add(&mut self, other: Self) {
+        self.projected += other.projected;
+        self.removed += other.removed;
     }
 }
 
@@ -72,13 +66,15 @@ pub fn correct(
     wrapping: Wrapping,
     tolerance: f64,
 ) -> (Vec<Corrected>, Correction) {
-    let mended = Mended::new(mesh, strips, domain, Cow::Borrowed(points), wrapping, tolerance);
-    let picks = Picks::new(&mended, mended.pick(|on, nth| !on.is_removed(nth)));
+    let caught = Caught::new(mesh, strips, domain, Cow::Borrowed(points), wrapping, tolerance);
+    let picked = caught.pick(|_| true);
+    let mended = caught.into_mended();
+    let picks = Picks::new(&mended, picked);
     let mut corrected = Vec::with_capacity(picks.count());
     let mut correction = Correction::default();
     let blocks = picks.blocks(&mended, Keep::All, |block| {
-        correction.add(block);
-        corrected.extend(block.iter().map(|c| **c));
+        correction.add(mended.correction(block));
+        parallel::extend(&mut corrected, block.len(), |i| mended.corrected(block[i]));
         Ok::<(), Infallible>(())
     });
     match blocks {
@@ -87,13 +83,18 @@ pub fn correct(
     }
 }
 
-/// What was caught and what the correction does to it, face by face; samples are made when they are asked for.
+/// Samples are made here, when they are asked for, of what the correction left.
 pub(crate) struct Mended<'a> {
     strips: &'a Strips,
     domain: &'a PlanarDomain,
     points: Cow<'a, DomainPoints>,
-    wrapping: Wrapping,
     mends: Mends,
+}
+
+/// What was caught, face by face, and what the correction does to it.
+pub(crate) struct Caught<'a> {
+    mended: Mended<'a>,
+    wrapping: Wrapping,
 }
 
 /// The little that the correction changes, each list ordered by face.
@@ -104,6 +105,10 @@ struct Mends {
     /// Copies that stay where others of them were removed, and how many.
     kept: Vec<(FaceId, u64, u32)>,
     projected: Vec<Projection>,
+    /// For each 64 faces those to which any of these belongs, and how many such faces there are before.
+    touched: Vec<(u64, u32)>,
+    /// For each touched face where its part of each list starts, and where the lists end.
+    starts: Vec<[u32; 3]>,
 }
 
 /// A point of an interstice and the edge onto which it is projected.
@@ -117,14 +122,76 @@ struct Projection {
     place: DVec2,
 }
 
-/// The slice of a list ordered by face that belongs to one.
-fn of_face<T>(list: &[T], face: FaceId, of: impl Fn(&T) -> FaceId) -> &[T] {
-    let start = list.partition_point(|item| of(item) < face);
-    let end = start + list[start..].iter().take_while(|item| of(item) == face).count();
-    &list[start..end]
+impl Mends {
+    fn new(
+        faces: usize,
+        removed: Vec<(FaceId, u64)>,
+        kept: Vec<(FaceId, u64, u32)>,
+        projected: Vec<Projection>,
+    ) -> Self {
+        let mut touched = vec![(0, 0); faces.div_ceil(64)];
+        let of_removed = removed.iter().map(|r| r.0);
+        let of_kept = kept.iter().map(|k| k.0);
+        let of_projected = projected.iter().map(Projection::face);
+        for face in of_removed.chain(of_kept).chain(of_projected) {
+            touched[face.index() / 64].0 |= 1 << (face.index() % 64);
+        }
+        let (mut starts, mut start) = (Vec::new(), [0; 3]);
+        for (i, (faces, before)) in touched.iter_mut().enumerate() {
+            *before = starts.len() as u32;
+            for face in (64 * i..).zip(0..64).filter(|(_, bit)| *faces >> bit & 1 == 1).map(|(face, _)| face)
+            {
+                starts.push(start.map(|s| s as u32));
+                let face = FaceId::new(face);
+                start[0] += removed[start[0]..].iter().take_while(|r| r.0 == face).count();
+                start[1] += kept[start[1]..].iter().take_while(|k| k.0 == face).count();
+                start[2] += projected[start[2]..].iter().take_while(|p| p.face() == face).count();
+            }
+        }
+        starts.push(start.map(|s| s as u32));
+        Self { removed, kept, projected, touched, starts }
+    }
+
+    /// Which of the touched faces one is; the correction leaves most as they are.
+    #[inline]
+    fn touched(&self, face: FaceId) -> Option<usize> {
+        let (faces, before) = self.touched[face.index() / 64];
+        let bit = 1 << (face.index() % 64);
+        (faces & bit != 0).then(|| (before + (faces & (bit - 1)).count_ones()) as usize)
+    }
+
+    /// Which part of a list belongs to a face.
+    #[inline]
+    fn of(&self, face: FaceId, list: usize) -> Range<usize> {
+        self.touched(face).map_or(0..0, |touched| {
+            let [start, end] = [touched, touched + 1].map(|at| self.starts[at][list] as usize);
+            start..end
+        })
+    }
+
+    #[inline]
+    fn removed(&self, face: FaceId) -> &[(FaceId, u64)] {
+        &self.removed[self.of(face, 0)]
+    }
+
+    #[inline]
+    fn kept(&self, face: FaceId) -> &[(FaceId, u64, u32)] {
+        &self.kept[self.of(face, 1)]
+    }
+
+    #[inline]
+    fn projected(&self, face: FaceId) -> &[Projection] {
+        &self.projected[self.of(face, 2)]
+    }
 }
 
-impl<'a> Mended<'a> {
+impl Projection {
+    fn face(&self) -> FaceId {
+        self.halfedge.face()
+    }
+}
+
+impl<'a> Caught<'a> {
     pub(crate) fn new(
         mesh: &SurfaceMesh,
         strips: &'a Strips,
@@ -134,111 +201,160 @@ impl<'a> Mended<'a> {
         tolerance: f64,
     ) -> Self {
         let mends = seams::mend(mesh, strips, domain, &points, &wrapping, tolerance);
-        Self { strips, domain, points, wrapping, mends }
+        Self { mended: Mended { strips, domain, points, mends }, wrapping }
     }
 
     /// How many samples there are.
     pub(crate) fn count(&self) -> usize {
-        self.wrapping.count() + self.mends.projected.len() - self.mends.removed.len()
+        let Mends { removed, projected, .. } = &self.mended.mends;
+        self.wrapping.count() + projected.len() - removed.len()
     }
 
     /// What is on a face.
+    #[inline]
     pub(crate) fn on(&self, face: FaceId) -> OnFace<'_> {
-        let place = self.strips.places[face.index()];
         OnFace {
-            points: &self.points,
             face,
-            strip: place.strip,
-            corners: self.domain.triangle(self.strips, face),
-            slots: self.wrapping.slots(place),
-            removed: of_face(&self.mends.removed, face, |r| r.0),
-            kept: of_face(&self.mends.kept, face, |k| k.0),
-            projected: of_face(&self.mends.projected, face, |p| p.halfedge.face()),
+            slots: self.wrapping.slots(self.mended.strips.places[face.index()]),
+            removed: self.mended.mends.removed(face),
+            projected: self.mended.mends.projected(face),
         }
     }
 
-    /// Which samples stay, in pieces of faces; `stays` hears what is on a face and which of it.
-    pub(crate) fn pick(&self, stays: impl Fn(&OnFace<'_>, usize) -> bool + Sync + Send) -> Vec<Vec<Pick>> {
+    /// The samples that stay, in pieces of faces.
+    pub(crate) fn pick(&self, stays: impl Fn(Pick) -> bool + Sync + Send) -> Vec<Vec<Pick>> {
         const SAMPLES: usize = 8192;
-        let faces = self.strips.places.len();
+        let faces = self.mended.strips.places.len();
         let size = (SAMPLES * faces / self.count().max(1)).clamp(1, SAMPLES);
         parallel::map_chunks(faces, size, |range| {
             let mut picked = Vec::new();
             for face in range.map(FaceId::new) {
-                let on = self.on(face);
-                let staying = (0..on.len()).filter(|&nth| stays(&on, nth));
-                picked.extend(staying.map(|nth| Pick { face, nth: nth as u32 }));
+                picked.extend(self.on(face).picks().filter(|&pick| stays(pick)));
             }
             picked
         })
     }
 
-    /// Above the number of every point.
-    pub(crate) fn end(&self) -> u64 {
-        self.points.end()
+    /// Where samples are made.
+    pub(crate) fn mended(&self) -> &Mended<'a> {
+        &self.mended
+    }
+
+    /// Without the lists of what was caught: samples that were picked need them no more.
+    pub(crate) fn into_mended(self) -> Mended<'a> {
+        self.mended
     }
 }
 
 /// The samples of one face.
 pub(crate) struct OnFace<'a> {
-    points: &'a DomainPoints,
     face: FaceId,
-    strip: StripId,
-    /// In the domain.
-    corners: [DVec2; 3],
     slots: &'a [u64],
     removed: &'a [(FaceId, u64)],
-    kept: &'a [(FaceId, u64, u32)],
     projected: &'a [Projection],
 }
 
-impl<'a> OnFace<'a> {
-    /// How many places for samples there are; a few may be empty.
-    pub(crate) fn len(&self) -> usize {
-        self.slots.len() + self.projected.len()
+impl OnFace<'_> {
+    /// All of them.
+    pub(crate) fn picks(&self) -> impl Iterator<Item = Pick> + '_ {
+        let projected = self.projected.iter().map(|p| p.slot);
+        self.wrapped().chain(projected).map(|slot| Pick::new(self.face, slot))
     }
 
-    /// Whether the sample at a place was removed.
-    #[inline]
-    pub(crate) fn is_removed(&self, at: usize) -> bool {
-        let slot = self.slots.get(at);
-        slot.is_some_and(|&slot| self.removed.iter().any(|r| r.1 == slot))
+    /// The slots of those that were caught and stay.
+    fn wrapped(&self) -> impl Iterator<Item = u64> + '_ {
+        self.slots.iter().copied().filter(|slot| self.removed.iter().all(|r| r.1 != *slot))
     }
 
-    /// Which point of the sequence is at a place; `None` beyond the last.
+    /// Calls `visit` with all of them, some at a time, and their barycentric coordinates, of which those of other lanes
+    /// mean nothing.
     #[inline]
-    fn index(&self, at: usize) -> Option<u64> {
-        let slot = match self.slots.get(at) {
-            Some(&slot) => slot,
-            None => self.projected.get(at - self.slots.len())?.slot,
+    pub(crate) fn side_by_side(&self, mended: &Mended<'_>, mut visit: impl FnMut(&[u64], &[Lanes; 3])) {
+        let alone = |slot| {
+            let point = mended.sample(Pick::new(self.face, slot)).point;
+            point.barycentric.map(|weight| [weight; LANES])
         };
-        Some(self.points.at(slot).1)
-    }
-
-    /// The sample at a place; `None` where one was removed.
-    #[inline]
-    pub(crate) fn sample(&self, at: usize) -> Option<Corrected> {
-        let Some(&slot) = self.slots.get(at) else {
-            return self.projected.get(at - self.slots.len()).map(|p| self.projection(p));
-        };
-        if self.is_removed(at) {
-            return None;
+        if self.removed.is_empty() && !self.slots.is_empty() {
+            let triangle = plane::Triangle::new(mended.domain.triangle(mended.strips, self.face));
+            for of_face in self.slots.chunks(LANES) {
+                let mut slots = [of_face[0]; LANES];
+                slots[..of_face.len()].copy_from_slice(of_face);
+                visit(of_face, &triangle.barycentric(&mended.points.places(&slots)));
+            }
+        } else {
+            self.wrapped().for_each(|slot| visit(&[slot], &alone(slot)));
         }
-        let (place, index) = self.points.at(slot);
-        let [a, b, c] = self.corners;
-        let point = SurfacePoint { face: self.face, barycentric: plane::barycentric(a, b, c, place) };
-        let sample = Sample { point, strip: self.strip, place, origin: Origin::Wrapped };
-        let copies_removed = self.kept.iter().find(|k| k.1 == slot).map_or(0, |k| k.2);
-        Some(Corrected { index, copies_removed, sample })
+        for &Projection { slot, .. } in self.projected {
+            visit(&[slot], &alone(slot));
+        }
+    }
+}
+
+impl Mended<'_> {
+    /// Above the number of every point.
+    pub(crate) fn end(&self) -> u64 {
+        self.points.end()
     }
 
-    fn projection(&self, projection: &Projection) -> Corrected {
-        let Projection { slot, place, halfedge, along, .. } = *projection;
-        let mut barycentric = [0.0; 3];
-        barycentric[halfedge.corner()] = 1.0 - along;
-        barycentric[(halfedge.corner() + 1) % 3] = along;
-        let point = SurfacePoint { face: self.face, barycentric };
-        let sample = Sample { point, strip: self.strip, place, origin: Origin::Projected };
-        Corrected { index: self.points.at(slot).1, copies_removed: 0, sample }
+    /// Which point of the sequence a sample comes from.
+    #[inline]
+    pub(crate) fn index(&self, pick: Pick) -> u64 {
+        self.points.index(pick.slot())
+    }
+
+    #[inline]
+    fn strip(&self, face: FaceId) -> StripId {
+        self.strips.places[face.index()].strip
+    }
+
+    /// A sample that was picked.
+    #[inline]
+    pub(crate) fn sample(&self, pick: Pick) -> Sample {
+        let Pick { face, .. } = pick;
+        let strip = self.strip(face);
+        if let Some(projection) = self.projection(pick) {
+            let Projection { place, halfedge, along, .. } = *projection;
+            let mut barycentric = [0.0; 3];
+            barycentric[halfedge.corner()] = 1.0 - along;
+            barycentric[(halfedge.corner() + 1) % 3] = along;
+            return Sample {
+                point: SurfacePoint { face, barycentric },
+                strip,
+                place,
+                origin: Origin::Projected,
+            };
+        }
+        let place = self.points.at(pick.slot()).0;
+        let [a, b, c] = self.domain.triangle(self.strips, face);
+        let point = SurfacePoint { face, barycentric: plane::barycentric(a, b, c, place) };
+        Sample { point, strip, place, origin: Origin::Wrapped }
+    }
+
+    #[inline]
+    fn projection(&self, pick: Pick) -> Option<&Projection> {
+        self.mends.projected(pick.face).iter().find(|p| p.slot == pick.slot())
+    }
+
+    /// How many other copies of a sample were removed.
+    fn copies_removed(&self, pick: Pick) -> u32 {
+        self.mends.kept(pick.face).iter().find(|k| k.1 == pick.slot()).map_or(0, |k| k.2)
+    }
+
+    pub(crate) fn corrected(&self, pick: Pick) -> Corrected {
+        Corrected {
+            index: self.index(pick),
+            copies_removed: self.copies_removed(pick),
+            sample: self.sample(pick),
+        }
+    }
+
+    /// What the correction did to these.
+    pub(crate) fn correction(&self, picks: &[Pick]) -> Correction {
+        let mut correction = Correction::default();
+        for &pick in picks.iter().filter(|pick| self.mends.touched(pick.face).is_some()) {
+            correction.projected += usize::from(self.projection(pick).is_some());
+            correction.removed += self.copies_removed(pick) as usize;
+        }
+        correction
     }
 }

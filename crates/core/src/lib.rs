@@ -68,6 +68,7 @@ mod halves;
 mod ids;
 pub mod io;
 pub mod irregularity;
+mod lanes;
 pub mod measure;
 mod mesh;
 mod parallel;

@@ -16,6 +16,17 @@ pub(crate) fn map<R: Send>(count: usize, f: impl Fn(usize) -> R + Sync + Send) -
     }
 }
 
+/// Puts `f` of every index from 0 to `count - 1` behind the items, in order.
+pub(crate) fn extend<T: Send>(items: &mut Vec<T>, count: usize, f: impl Fn(usize) -> T + Sync + Send) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        items.par_extend((0..count).into_par_iter().map(f));
+    }
+    #[cfg(not(feature = "parallel"))]
+    items.extend((0..count).map(f));
+}
+
 /// The results of two, side by side.
 pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     #[cfg(feature = "parallel")]

@@ -7,7 +7,7 @@ use std::convert::Infallible;
 use glam::DVec2;
 
 use crate::baseline::HilbertOrder;
-use crate::correct::{Correction, Keep, Mended, Pick, Picks};
+use crate::correct::{Caught, Correction, Keep, Mended, Pick, Picks};
 use crate::density::Density;
 use crate::domain::{DomainPoints, PlanarDomain, TooManyCells};
 use crate::irregularity;
@@ -65,7 +65,8 @@ pub(crate) enum Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    fn picked(mended: Mended<'a>, picked: Vec<Vec<Pick>>, keep: Keep) -> Self {
+    fn picked(caught: Caught<'a>, picked: Vec<Vec<Pick>>, keep: Keep) -> Self {
+        let mended = caught.into_mended();
         let picks = Picks::new(&mended, picked);
         Self::Picked { mended: Box::new(mended), picks, keep }
     }
@@ -80,17 +81,19 @@ impl<'a> Points<'a> {
 
     /// All of them, and what the correction did to them.
     pub(crate) fn into_samples(self) -> (Vec<Sample>, Correction) {
-        if let Self::Made { samples, correction } = self {
-            return (samples, correction);
-        }
-        let mut samples = Vec::with_capacity(self.count());
-        let correction = self.hand_on(|block| {
-            samples.extend_from_slice(block);
-            Ok::<(), Infallible>(())
-        });
-        match correction {
-            Ok(correction) => (samples, correction),
-            Err(never) => match never {},
+        let mut all = Vec::with_capacity(if let Self::Picked { .. } = self { self.count() } else { 0 });
+        match self {
+            Self::Picked { mended, picks, keep } => {
+                let correction = made(&mended, &picks, keep, |block| {
+                    parallel::extend(&mut all, block.len(), |i| mended.sample(block[i]));
+                    Ok::<(), Infallible>(())
+                });
+                match correction {
+                    Ok(correction) => (all, correction),
+                    Err(never) => match never {},
+                }
+            }
+            Self::Made { samples, correction } => (samples, correction),
         }
     }
 
@@ -104,12 +107,12 @@ impl<'a> Points<'a> {
         const BLOCK: usize = 1 << 17;
         match self {
             Self::Picked { mended, picks, keep } => {
-                let mut correction = Correction::default();
-                picks.blocks(&mended, keep, |block| {
-                    correction.add(block);
-                    take(&parallel::map(block.len(), |i| block[i].sample))
-                })?;
-                Ok(correction)
+                let mut samples = Vec::new();
+                made(&mended, &picks, keep, |block| {
+                    samples.clear();
+                    parallel::extend(&mut samples, block.len(), |i| mended.sample(block[i]));
+                    take(&samples)
+                })
             }
             Self::Made { samples, correction } => {
                 samples.chunks(BLOCK).try_for_each(take)?;
@@ -117,6 +120,21 @@ impl<'a> Points<'a> {
             }
         }
     }
+}
+
+/// Calls `make` with block after block of what is kept, in order. What the correction did to it.
+fn made<E>(
+    mended: &Mended<'_>,
+    picks: &Picks,
+    keep: Keep,
+    mut make: impl FnMut(&[Pick]) -> Result<(), E>,
+) -> Result<Correction, E> {
+    let mut correction = Correction::default();
+    picks.blocks(mended, keep, |block| {
+        correction.add(mended.correction(block));
+        make(block)
+    })?;
+    Ok(correction)
 }
 
 /// How many points are caught for each that is wanted when the most central ones are chosen. More bring the errors down
@@ -176,13 +194,13 @@ impl<'a> Scattering<'a> {
     }
 
     /// The samples that so many points of the domain give.
-    fn scatter(&self, count: u64, d_m: f64) -> Result<Mended<'a>, OptionsError> {
+    fn scatter(&self, count: u64, d_m: f64) -> Result<Caught<'a>, OptionsError> {
         let reach = self.tolerance * d_m;
         let points =
             DomainPoints::scatter_near(self.domain, self.strips, &self.sequence, count, self.shift, reach)
                 .map_err(|TooManyCells| OptionsError::TooMany { wanted: count as f64 })?;
         let wrapping = wrap(self.strips, self.domain, &points);
-        Ok(Mended::new(self.mesh, self.strips, self.domain, Cow::Owned(points), wrapping, reach))
+        Ok(Caught::new(self.mesh, self.strips, self.domain, Cow::Owned(points), wrapping, reach))
     }
 
     /// The points of `count` scattered ones that weights leave: those whose third coordinate is below their density
@@ -200,15 +218,14 @@ impl<'a> Scattering<'a> {
         d_m: f64,
         stays: impl Fn(u64, f64) -> bool + Sync + Send,
     ) -> Result<Weighed<'a>, OptionsError> {
-        let mended = self.scatter(count, d_m)?;
+        let caught = self.scatter(count, d_m)?;
         let picked = if self.density.is_uniform() {
-            mended.pick(|on, nth| !on.is_removed(nth))
+            caught.pick(|_| true)
         } else {
-            mended.pick(|on, nth| {
-                on.sample(nth).is_some_and(|c| stays(c.index, self.density.at(&c.sample.point)))
-            })
+            let mended = caught.mended();
+            caught.pick(|pick| stays(mended.index(pick), self.density.at(&mended.sample(pick).point)))
         };
-        Ok(Weighed { mended, picked })
+        Ok(Weighed { caught, picked })
     }
 
     fn at_spacing(&self, d_m: f64) -> Result<Scattered<'a>, OptionsError> {
@@ -297,9 +314,9 @@ impl<'a> Scattering<'a> {
         let regions = Regions::new(self.mesh, self.density, n);
         let mut count = self.count_for(n, SURPLUS);
         loop {
-            let mended = self.scatter(count, d_m)?;
-            if let Some(picked) = regions.choose(&mended) {
-                return Ok(Weighed { mended, picked }.kept(Keep::All, d_m));
+            let caught = self.scatter(count, d_m)?;
+            if let Some(picked) = regions.choose(&caught) {
+                return Ok(Weighed { caught, picked }.kept(Keep::All, d_m));
             }
             count = count.saturating_mul(2);
             if self.is_too_many(count, n) {
@@ -381,7 +398,7 @@ impl<'a> Scattering<'a> {
 
 /// What was caught, and which of it stays.
 struct Weighed<'a> {
-    mended: Mended<'a>,
+    caught: Caught<'a>,
     picked: Vec<Vec<Pick>>,
 }
 
@@ -393,6 +410,6 @@ impl<'a> Weighed<'a> {
 
     /// Of those that stay, in order, the ones that are kept.
     fn kept(self, keep: Keep, d_m: f64) -> Scattered<'a> {
-        Scattered { points: Points::picked(self.mended, self.picked, keep), d_m }
+        Scattered { points: Points::picked(self.caught, self.picked, keep), d_m }
     }
 }

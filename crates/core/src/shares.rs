@@ -12,11 +12,13 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::buckets::Buckets;
-use crate::correct::{Corrected, Mended, Pick};
+use crate::correct::{Caught, Pick};
 use crate::density::Density;
 use crate::halves::split_by_mass;
 use crate::ids::FaceId;
+use crate::lanes;
 use crate::mesh::SurfaceMesh;
+use crate::sample::SurfacePoint;
 use stays::{Candidate, Stays};
 use walk::{Table, Walk};
 
@@ -35,6 +37,14 @@ struct Item {
 struct Start {
     along: f64,
     face: FaceId,
+}
+
+/// A face of the row: where it starts, its mass, and the walk through it.
+#[derive(Clone, Copy)]
+struct Part {
+    along: f64,
+    mass: f64,
+    walk: Walk,
 }
 
 /// Regions of equal mass. Faces lie in a row along which regions follow each other; the unit is a region.
@@ -87,24 +97,24 @@ impl<'a> Regions<'a> {
         Self { mesh, density, count, row, table: Table::new() }
     }
 
-    /// Where a face of the row starts, its mass, and the walk through it.
-    fn face(&self, at: usize) -> (f64, f64, Walk) {
+    #[inline]
+    fn face(&self, at: usize) -> Part {
         let Start { along, face } = self.row[at];
         let end = self.row.get(at + 1).map_or(self.count as f64, |next| next.along);
-        (along, end - along, Walk::new(self.mesh, face, end - along))
+        Part { along, mass: end - along, walk: Walk::new(self.mesh, face, end - along) }
     }
 
     fn region_at(&self, along: f64) -> usize {
         (along as usize).min(self.count - 1)
     }
 
-    /// The centroids of some regions.
-    fn centroids(&self, regions: Range<usize>) -> Vec<DVec3> {
+    /// The centroids of some regions; `face` gives faces of the row.
+    fn centroids(&self, regions: Range<usize>, face: impl Fn(usize) -> Part) -> Vec<DVec3> {
         let mut moments = vec![DVec3::ZERO; regions.len()];
         let mut masses = vec![0.0; regions.len()];
         let first = self.row.partition_point(|start| start.along <= regions.start as f64).saturating_sub(1);
         for at in first..self.row.len() {
-            let (along, mass, walk) = self.face(at);
+            let Part { along, mass, walk } = face(at);
             if along >= regions.end as f64 {
                 break;
             }
@@ -127,35 +137,45 @@ impl<'a> Regions<'a> {
     }
 
     /// What was caught on some faces of the row, each with its region and how far it lies from the middle.
-    fn candidates(&self, caught: &Mended<'_>, row: Range<usize>) -> Vec<Candidate> {
+    fn candidates(&self, caught: &Caught<'_>, row: Range<usize>) -> Vec<Candidate> {
+        let parts: Vec<Part> = row.clone().map(|at| self.face(at)).collect();
         let end = self.row.get(row.end).map_or(self.count as f64, |next| next.along);
         let (first, last) = (self.region_at(self.row[row.start].along), self.region_at(end));
-        let centroids = self.centroids(first..last + 1);
+        let centroids = self.centroids(first..last + 1, |at| {
+            at.checked_sub(row.start).and_then(|at| parts.get(at)).map_or_else(|| self.face(at), |part| *part)
+        });
         // In units of d_m, so that singles hold it.
         let unit = self.count as f64 / self.mesh.area();
-        let mut candidates = Vec::new();
-        for at in row {
-            let (along, mass, walk) = self.face(at);
+        let weighed = !self.density.is_uniform();
+        // As many as are due, and some more.
+        let due = (end - self.row[row.start].along) * (caught.count() as f64 / self.count as f64);
+        let mut candidates = Vec::with_capacity((1.1 * due) as usize + 64);
+        for (at, Part { along, mass, walk }) in row.zip(parts) {
             let face = self.row[at].face;
-            let on = caught.on(face);
-            for nth in 0..on.len() {
-                let Some(Corrected { sample, .. }) = on.sample(nth) else { continue };
-                if self.density.at(&sample.point) > 0.0 {
-                    let weights = sample.point.barycentric;
+            caught.on(face).side_by_side(caught.mended(), |slots, weights| {
+                let mut alongs = walk.shares(weights);
+                alongs.iter_mut().for_each(|share| *share = along + mass * *share);
+                let regions = lanes::floor(&alongs);
+                let positions = walk.positions(weights);
+                for (lane, &slot) in slots.iter().enumerate() {
                     // Rounding may carry the end of a face over.
-                    let region = self.region_at(along + mass * walk.share(weights)).min(last);
-                    let off = walk.position(weights).distance_squared(centroids[region - first]) * unit;
-                    let pick = Pick { face, nth: nth as u32 };
-                    candidates.push(Candidate { region: region as u32, off: off as f32, pick });
+                    let region = (regions[lane] as usize).min(last);
+                    let place = DVec3::from_array(positions.map(|axis| axis[lane]));
+                    let off = place.distance_squared(centroids[region - first]) * unit;
+                    let barycentric = weights.map(|weight| weight[lane]);
+                    if !weighed || self.density.at(&SurfacePoint { face, barycentric }) > 0.0 {
+                        let pick = Pick::new(face, slot);
+                        candidates.push(Candidate { region: region as u32, off: off as f32, pick });
+                    }
                 }
-            }
+            });
         }
         candidates
     }
 
     /// Of what was caught one point a region stays, the one nearest to its centroid; a region without points gets one of
     /// the next that has some to spare. `None` if less was caught than there are regions. In pieces, region after region.
-    pub(crate) fn choose(&self, caught: &Mended<'_>) -> Option<Vec<Vec<Pick>>> {
+    pub(crate) fn choose(&self, caught: &Caught<'_>) -> Option<Vec<Vec<Pick>>> {
         /// Candidates that are there at a time, or some more.
         const TOGETHER: usize = 1 << 20;
         match self.choose_by(caught, TOGETHER) {
@@ -166,7 +186,7 @@ impl<'a> Regions<'a> {
     }
 
     /// As [`choose`](Self::choose), with about so many candidates at a time; `None` also if the last so many are too few.
-    fn choose_by(&self, caught: &Mended<'_>, together: usize) -> Option<Vec<Vec<Pick>>> {
+    fn choose_by(&self, caught: &Caught<'_>, together: usize) -> Option<Vec<Vec<Pick>>> {
         /// Points a piece of work is to have, and regions of a bucket.
         const POINTS: usize = 8192;
         const REGIONS: usize = 8192;
@@ -200,7 +220,7 @@ impl<'a> Regions<'a> {
                 None => buckets - first,
             };
             is_enough = stays.add(&candidates, complete);
-            carried = (complete..candidates.count()).flat_map(|b| candidates.bucket(b)).copied().collect();
+            carried = (complete..candidates.count()).flat_map(|b| candidates.to_vec(b)).collect();
         }
         is_enough.then(|| stays.into_picks())
     }
@@ -217,8 +237,12 @@ fn cut(items: &mut [Item], start: f64) {
     let high = items.iter().fold(DVec3::NEG_INFINITY, |m, i| m.max(i.position));
     let extent = high - low;
     let axis = (1..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
-    let order = |a: &Item, b: &Item| a.position[axis].total_cmp(&b.position[axis]).then(a.id.cmp(&b.id));
-    let middle = split_by_mass(items, order, |item| item.mass, border - start);
+    // Once for each axis, because most of the time is spent there.
+    let middle = match axis {
+        0 => split_along(items, |p| p.x, border - start),
+        1 => split_along(items, |p| p.y, border - start),
+        _ => split_along(items, |p| p.z, border - start),
+    };
     let (below, above) = items.split_at_mut(middle);
     let between = start + below.iter().map(|i| i.mass).sum::<f64>();
     #[cfg(feature = "parallel")]
@@ -232,6 +256,12 @@ fn cut(items: &mut [Item], start: f64) {
     }
     cut(below, start);
     cut(above, between);
+}
+
+/// Splits items across an axis so that those below have about so much mass.
+fn split_along(items: &mut [Item], axis: impl Fn(DVec3) -> f64, wanted: f64) -> usize {
+    let order = |a: &Item, b: &Item| axis(a.position).total_cmp(&axis(b.position)).then(a.id.cmp(&b.id));
+    split_by_mass(items, order, |item| item.mass, wanted)
 }
 
 #[cfg(test)]

@@ -1,12 +1,11 @@
 //! Wrapping (paper, 4.2 steps 2 and 4): points of the planar domain mapped back to the surface.
 
-use std::ops::Range;
-
 use glam::DVec2;
 
 use crate::domain::{DomainPoints, PlanarDomain};
 use crate::geometry::plane;
 use crate::ids::{FaceId, StripId};
+use crate::lanes::{LANES, Lanes};
 use crate::parallel;
 use crate::sample::SurfacePoint;
 use crate::unfold::{FacePlace, Strip, Strips};
@@ -56,25 +55,35 @@ pub fn wrap(strips: &Strips, domain: &PlanarDomain, points: &DomainPoints) -> Wr
     let count: usize = strips.strips.iter().map(|s| s.faces.len()).sum();
     let faces = faces_of_piece(count, points.count());
     let pieces = parallel::map_chunks(count, faces, |range| {
-        let mut piece = Piece { ends: Vec::with_capacity(range.len()), slots: Vec::new() };
+        let mut ends = Vec::with_capacity(range.len());
+        // Slots of points are written whether they are caught or not, and only counted if they are: no processor foresees
+        // which.
+        let (mut slots, mut caught) = (vec![0; ROOM], 0);
         let mut s = firsts.partition_point(|&first| first <= range.start) - 1;
         for face in range {
             while s + 1 < firsts.len() && firsts[s + 1] <= face {
                 s += 1;
             }
             let corners = laid(&strips.strips[s], face - firsts[s], domain.offsets[s]);
-            let triangle = Triangle(corners);
-            points.in_triangle(corners, |slot, place| {
-                if triangle.holds(place) {
-                    piece.slots.push(slot);
+            let triangle = Triangle::new(corners);
+            points.in_triangle(corners, |some, places| {
+                if caught + LANES > slots.len() {
+                    slots.resize(2 * slots.len(), 0);
+                }
+                for (&slot, is_held) in some.iter().zip(triangle.holds(places)) {
+                    slots[caught] = slot;
+                    caught += usize::from(is_held);
                 }
             });
-            piece.ends.push(piece.slots.len() as u32);
+            ends.push(caught as u32);
         }
-        piece
+        Piece { ends, slots: slots[..caught].to_vec() }
     });
     Wrapping { firsts, faces, pieces }
 }
+
+/// Slots for which there is room at first: as many as most pieces have.
+const ROOM: usize = 1 << 14;
 
 /// So many that a piece has some thousands of points, and is worth a visit of a core.
 fn faces_of_piece(faces: usize, points: u64) -> usize {
@@ -89,18 +98,45 @@ fn laid(strip: &Strip, index: usize, offset: DVec2) -> [DVec2; 3] {
 }
 
 /// A triangle that is asked about many points.
-struct Triangle([DVec2; 3]);
+struct Triangle {
+    corners: [DVec2; 3],
+    /// No corner lies farther from the first one in x or in y.
+    extent: f64,
+}
 
 impl Triangle {
+    #[inline]
+    fn new(corners: [DVec2; 3]) -> Self {
+        let [a, b, c] = corners;
+        Self { corners, extent: (b - a).abs().max((c - a).abs()).max_element() }
+    }
+
     /// As [`plane::triangle_holds`], to the bit; where rounding cannot change the sign without the exact test.
     #[inline]
-    fn holds(&self, p: DVec2) -> bool {
-        let [a, b, c] = self.0.map(|v| v - p);
-        let least = a.perp_dot(b).min(b.perp_dot(c)).min(c.perp_dot(a));
-        let far = a.abs().max(b.abs()).max(c.abs()).max_element();
-        // Shewchuk's bound, (3 + 16 e) e times the sum of the two products, is less than this.
-        let error = 8e-16 * far * far;
-        least > error || (least >= -error && plane::triangle_holds(self.0[0], self.0[1], self.0[2], p))
+    fn holds(&self, [x, y]: &[Lanes; 2]) -> [bool; LANES] {
+        let (mut least, mut error) = ([0.0; LANES], [0.0; LANES]);
+        let [a, b, c] = self.corners;
+        let lower = |s: f64, t: f64| if s < t { s } else { t };
+        for lane in 0..LANES {
+            let p = DVec2::new(x[lane], y[lane]);
+            let (a, b, c) = (a - p, b - p, c - p);
+            least[lane] = lower(lower(a.perp_dot(b), b.perp_dot(c)), c.perp_dot(a));
+            let (aside, above) = (a.x.abs(), a.y.abs());
+            let far = self.extent + if aside > above { aside } else { above };
+            // Shewchuk's bound, (3 + 16 e) e times the sum of the two products, is less than this.
+            error[lane] = 8e-16 * far * far;
+        }
+        let mut holds = [false; LANES];
+        for lane in 0..LANES {
+            holds[lane] = least[lane] > error[lane];
+        }
+        for lane in 0..LANES {
+            if least[lane].abs() <= error[lane] {
+                let [a, b, c] = self.corners;
+                holds[lane] = plane::triangle_holds(a, b, c, DVec2::new(x[lane], y[lane]));
+            }
+        }
+        holds
     }
 }
 
@@ -130,17 +166,23 @@ impl Wrapping {
     ) -> impl Iterator<Item = WrappedPoint> + 'a {
         let own = &strips.strips[strip.index()];
         (0u32..).zip(&own.faces).flat_map(move |(index, &face)| {
-            let [a, b, c] = laid(own, index as usize, domain.offsets[strip.index()]);
-            self.slots(FacePlace { strip, index }).iter().map(move |&slot| {
-                let (place, index) = points.at(slot);
-                let point = SurfacePoint { face, barycentric: plane::barycentric(a, b, c, place) };
-                WrappedPoint { index, point, place }
+            let triangle = plane::Triangle::new(laid(own, index as usize, domain.offsets[strip.index()]));
+            let slots = self.slots(FacePlace { strip, index });
+            slots.chunks(LANES).flat_map(move |some| {
+                let mut slots = [some[0]; LANES];
+                slots[..some.len()].copy_from_slice(some);
+                let places = points.places(&slots);
+                let weights = triangle.barycentric(&places);
+                some.iter().enumerate().map(move |(lane, &slot)| {
+                    let point = SurfacePoint { face, barycentric: weights.map(|weight| weight[lane]) };
+                    let place = DVec2::new(places[0][lane], places[1][lane]);
+                    WrappedPoint { index: points.index(slot), point, place }
+                })
             })
         })
     }
 
-    /// Each caught slot with its strip's face, in pieces that are worth a visit of a core: what `f` makes of each piece,
-    /// in order.
+    /// What `f` makes of pieces that are worth a visit of a core, in order.
     pub(crate) fn map_pieces<R: Send>(&self, f: impl Fn(CaughtPiece<'_>) -> R + Sync + Send) -> Vec<R> {
         parallel::map(self.pieces.len(), |i| f(CaughtPiece { wrapping: self, piece: i }))
     }
@@ -153,20 +195,21 @@ pub(crate) struct CaughtPiece<'a> {
 }
 
 impl CaughtPiece<'_> {
-    /// Its slots, each with the place of its face.
-    pub(crate) fn slots(&self) -> impl Iterator<Item = (u64, FacePlace)> + '_ {
+    /// Calls `f` with the place of each face and its slots.
+    pub(crate) fn for_each_face(&self, mut f: impl FnMut(FacePlace, &[u64])) {
         let Wrapping { firsts, faces, pieces } = self.wrapping;
         let Piece { ends, slots } = &pieces[self.piece];
         let first = self.piece * faces;
         let mut strip = firsts.partition_point(|&f| f <= first) - 1;
-        ends.iter().enumerate().flat_map(move |(i, &end)| {
-            while strip + 1 < firsts.len() && firsts[strip + 1] <= first + i {
+        let mut start = 0;
+        for (face, &end) in (first..).zip(ends) {
+            while strip + 1 < firsts.len() && firsts[strip + 1] <= face {
                 strip += 1;
             }
-            let place = FacePlace { strip: StripId::new(strip), index: (first + i - firsts[strip]) as u32 };
-            let range: Range<usize> = if i == 0 { 0 } else { ends[i - 1] as usize }..end as usize;
-            slots[range].iter().map(move |&slot| (slot, place))
-        })
+            let place = FacePlace { strip: StripId::new(strip), index: (face - firsts[strip]) as u32 };
+            f(place, &slots[start..end as usize]);
+            start = end as usize;
+        }
     }
 }
 

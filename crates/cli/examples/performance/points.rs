@@ -69,7 +69,7 @@ fn against_copying(bench: &Bench) -> Outcome<Row> {
         let wrapping = wrap(&strips, &domain, &points);
         let mut wrapped = Vec::with_capacity(wrapping.count());
         for strip in (0..strips.strips.len()).map(StripId::new) {
-            wrapped.extend(wrapping.points_of(&strips, &domain, &points, strip));
+            wrapping.points_of(&strips, &domain, &points, strip).for_each(|point| wrapped.push(point));
         }
         wrapped
     };

@@ -87,7 +87,7 @@ pub(super) fn mend(
         kept.2 += if same { next.2 } else { 0 };
         same
     });
-    Mends { removed: removed.into_iter().collect(), kept, projected }
+    Mends::new(mesh.face_count(), removed.into_iter().collect(), kept, projected)
 }
 
 /// Of the points near cut edges those that were caught, with all faces that caught them, in order.
@@ -95,27 +95,53 @@ fn copies(near: &[Near], strips: &Strips, wrapping: &Wrapping) -> Vec<Copy> {
     let mut wanted: Vec<(StripId, u64)> = near.iter().map(|n| (n.strip, n.slot)).collect();
     parallel::sort(&mut wanted);
     wanted.dedup();
-    // Most that was caught is not near a cut: a sieve of 16 bits for each that is wanted lets one in sixteen pass.
-    let bits = (16 * wanted.len().max(4)).next_power_of_two();
-    let bit = |slot: u64| (slot.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 32) as usize & (bits - 1);
-    let mut sieve = vec![0_u64; bits / 64];
-    for &(_, slot) in &wanted {
-        sieve[bit(slot) / 64] |= 1 << (bit(slot) % 64);
-    }
+    // Most that was caught is not near a cut: a sieve lets one in a hundred of the others pass.
+    let sieve = Sieve::new(wanted.iter().map(|w| w.1), wanted.len());
     let mut copies = wrapping
         .map_pieces(|piece| {
-            piece
-                .slots()
-                .filter(|&(slot, _)| sieve[bit(slot) / 64] >> (bit(slot) % 64) & 1 == 1)
-                .filter(|&(slot, place)| wanted.binary_search(&(place.strip, slot)).is_ok())
-                .map(|(slot, place)| {
-                    (place.strip, slot, strips.strips[place.strip.index()].faces[place.index as usize])
-                })
-                .collect::<Vec<Copy>>()
+            let mut copies: Vec<Copy> = Vec::new();
+            piece.for_each_face(|place, slots| {
+                for &slot in slots {
+                    if sieve.passes(slot) && wanted.binary_search(&(place.strip, slot)).is_ok() {
+                        let face = strips.strips[place.strip.index()].faces[place.index as usize];
+                        copies.push((place.strip, slot, face));
+                    }
+                }
+            });
+            copies
         })
         .concat();
     parallel::sort(&mut copies);
     copies
+}
+
+/// Bloom's filter (DOI 10.1145/362686.362692): three bits of one word for each number, 16 bits a number.
+struct Sieve(Vec<u64>);
+
+impl Sieve {
+    fn new(numbers: impl Iterator<Item = u64>, count: usize) -> Self {
+        let mut sieve = Self(vec![0; (count / 4).max(1).next_power_of_two()]);
+        for number in numbers {
+            let (word, bits) = sieve.bits(number);
+            sieve.0[word] |= bits;
+        }
+        sieve
+    }
+
+    /// The word of a number and its bits there.
+    #[inline]
+    fn bits(&self, number: u64) -> (usize, u64) {
+        let hash = number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let bit = |shift: u32| 1_u64 << (hash >> shift & 63);
+        // The upper bits are mixed best.
+        ((hash >> 32) as usize & (self.0.len() - 1), bit(58) | bit(52) | bit(46))
+    }
+
+    #[inline]
+    fn passes(&self, number: u64) -> bool {
+        let (word, bits) = self.bits(number);
+        self.0[word] & bits == bits
+    }
 }
 
 struct Seams<'a> {

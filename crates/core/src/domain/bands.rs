@@ -34,19 +34,28 @@ impl<const N: usize> Bands<N> {
         }
     }
 
-    /// The leftmost and the rightmost x of the polygon between two heights, to rounding; `None` if it is not there.
+    /// The leftmost and the rightmost x of the polygon in some bands of this height, by their lower sides, to rounding; the
+    /// leftmost one lies to the right of the other where it is not there.
     #[inline]
-    pub(super) fn between(&self, bottom: f64, top: f64) -> Option<(f64, f64)> {
-        let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+    pub(super) fn between<const LANES: usize>(
+        &self,
+        bottoms: &[f64; LANES],
+        height: f64,
+    ) -> [[f64; LANES]; 2] {
+        let (mut left, mut right) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
         for Side { low, high, slope } in self.sides {
-            if low.y > top || high.y < bottom {
-                continue;
+            for lane in 0..LANES {
+                let (bottom, top) = (bottoms[lane], bottoms[lane] + height);
+                let at_bottom = low.x + (bottom - low.y) * slope;
+                let at_top = low.x + (top - low.y) * slope;
+                let x = if low.y < bottom { at_bottom } else { low.x };
+                let z = if high.y > top { at_top } else { high.x };
+                let (near, far) = if x < z { (x, z) } else { (z, x) };
+                let is_there = (low.y <= top) & (high.y >= bottom);
+                left[lane] = if is_there & (near < left[lane]) { near } else { left[lane] };
+                right[lane] = if is_there & (far > right[lane]) { far } else { right[lane] };
             }
-            let x = if low.y < bottom { low.x + (bottom - low.y) * slope } else { low.x };
-            let z = if high.y > top { low.x + (top - low.y) * slope } else { high.x };
-            left = left.min(x).min(z);
-            right = right.max(x).max(z);
         }
-        (left <= right).then_some((left, right))
+        [left, right]
     }
 }

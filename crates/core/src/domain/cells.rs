@@ -65,13 +65,15 @@ impl Grid {
         let margin = 1e-6 * grid.cell_side + reach;
         (first..=last).map(move |row| {
             let bottom = f64::from(row) * grid.cell_side - margin;
-            let cut = if first == last {
-                Some((bands.low.x, bands.high.x))
+            let (left, right) = if first == last {
+                (bands.low.x, bands.high.x)
             } else {
-                bands.between(bottom, bottom + grid.cell_side + 2.0 * margin)
+                let [[left], [right]] = bands.between(&[bottom], grid.cell_side + 2.0 * margin);
+                (left, right)
             };
-            let columns = cut.map(|(left, right)| grid.row(left - margin)..grid.row(right + margin) + 1);
-            (row, columns.unwrap_or(0..0))
+            let columns =
+                if left <= right { grid.row(left - margin)..grid.row(right + margin) + 1 } else { 0..0 };
+            (row, columns)
         })
     }
 }

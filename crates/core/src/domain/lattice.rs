@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use super::PlanarDomain;
 use super::bands::Bands;
+use crate::lanes::{LANES, Lanes};
 use crate::sequence::{self, radical_inverse};
 
 /// The points (i / count, radical inverse of i), moved on the torus and scaled to the domain.
@@ -22,7 +23,11 @@ pub(super) struct Lattice {
     side: f64,
     /// base^digits.
     rows: u64,
+    /// Its reciprocal: the height of a row as a share of the side.
+    height: f64,
     digits: u32,
+    /// The first number whose point is carried around in x.
+    turn: u64,
 }
 
 impl Lattice {
@@ -36,7 +41,17 @@ impl Lattice {
             rows *= u64::from(base);
             digits += 1;
         }
-        Self { base, count, shift: sequence::shift(DVec2::ZERO, shift), side: domain.side, rows, digits }
+        let shift = sequence::shift(DVec2::ZERO, shift);
+        let (mut turn, mut end) = (0, count);
+        while turn < end {
+            let middle = turn + (end - turn) / 2;
+            if exact(middle) / exact(count) + shift.x >= 1.0 {
+                end = middle;
+            } else {
+                turn = middle + 1;
+            }
+        }
+        Self { base, count, shift, side: domain.side, rows, height: 1.0 / exact(rows), digits, turn }
     }
 
     pub(super) fn count(&self) -> u64 {
@@ -50,6 +65,25 @@ impl Lattice {
         DVec2::new(around(moved.x), around(moved.y)) * self.side
     }
 
+    /// As [`place`](Self::place), of some points.
+    #[inline(always)]
+    pub(super) fn places(&self, indices: &[u64; LANES]) -> [Lanes; 2] {
+        let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+        if self.base == 2 {
+            for lane in 0..LANES {
+                y[lane] = radical_inverse(indices[lane], 2);
+            }
+        } else {
+            y = indices.map(|index| radical_inverse(index, self.base));
+        }
+        let count = exact(self.count);
+        for lane in 0..LANES {
+            x[lane] = around(exact(indices[lane]) / count + self.shift.x) * self.side;
+            y[lane] = around(y[lane] + self.shift.y) * self.side;
+        }
+        [x, y]
+    }
+
     /// Before what lies beyond 1 is carried around the torus.
     #[inline]
     fn moved(&self, index: u64) -> DVec2 {
@@ -61,48 +95,108 @@ impl Lattice {
     /// around.
     fn rows(&self, low: f64, high: f64) -> RangeInclusive<i64> {
         let rows = exact(self.rows);
-        let row = |y: f64| (((y / self.side).clamp(0.0, 1.0) - self.shift.y) * rows).floor() as i64;
+        let row = |y: f64| {
+            let at = ((y / self.side).clamp(0.0, 1.0) - self.shift.y) * rows;
+            // Rounded down.
+            at as i64 - i64::from(at < (at as i64) as f64)
+        };
         let margin = MARGIN * self.side;
         let last = self.rows as i64 - 1;
         row(low - margin)..=row(high + margin).min(last)
     }
 
-    /// The points that may lie in the convex polygon, each once: those of its rows, cut to it.
+    /// The points that may lie in the convex polygon, each once: those of its rows, cut to it. `visit` hears some at a time
+    /// and where they lie; lanes beyond them hold places of others.
     #[inline]
-    pub(super) fn in_polygon<const N: usize>(&self, corners: [DVec2; N], visit: &mut impl FnMut(u64, DVec2)) {
+    pub(super) fn in_polygon<const N: usize>(
+        &self,
+        corners: [DVec2; N],
+        visit: &mut impl FnMut(&[u64], &[Lanes; 2]),
+    ) {
+        /// Points that are held back so that lanes are full.
+        const HELD: usize = 16 * LANES;
+        /// As many points as a row of a triangle has, or more.
+        const TOGETHER: usize = 8;
+        let mut look = |indices: &[u64]| {
+            for some in indices.chunks(LANES) {
+                let mut lanes = [some[0]; LANES];
+                lanes[..some.len()].copy_from_slice(some);
+                visit(some, &self.places(&lanes));
+            }
+        };
+        let (mut held, mut count) = ([0; HELD], 0);
+        let mut hold = |mut index: u64, mut points: u64| {
+            while points > 0 {
+                if count + TOGETHER > HELD {
+                    let whole = count - count % LANES;
+                    look(&held[..whole]);
+                    held.copy_within(whole..count, 0);
+                    count -= whole;
+                }
+                // All of them whether they are points of the row or not: how many are is not foreseen.
+                for (held, nth) in held[count..count + TOGETHER].iter_mut().zip(0..) {
+                    *held = index + nth * self.rows;
+                }
+                let some = points.min(TOGETHER as u64);
+                count += some as usize;
+                index += some * self.rows;
+                points -= some;
+            }
+        };
         let bands = Bands::new(corners);
         let height = self.side / exact(self.rows);
         // Rounding is far below these margins.
         let margin = MARGIN * self.side;
-        for row in self.rows(bands.low.y, bands.high.y) {
-            let bottom = row as f64 * height + self.shift.y * self.side - margin;
-            if let Some((left, right)) = bands.between(bottom, bottom + height + 2.0 * margin) {
-                self.in_row(row, left, right, visit);
+        let (first, last) = self.rows(bands.low.y, bands.high.y).into_inner();
+        for row in (first..=last).step_by(LANES) {
+            let mut bottoms = [0.0; LANES];
+            for (bottom, row) in bottoms.iter_mut().zip(row..) {
+                *bottom = row as f64 * height + self.shift.y * self.side - margin;
+            }
+            let [mut left, mut right] = bands.between(&bottoms, height + 2.0 * margin);
+            for lane in 0..LANES {
+                (left[lane], right[lane]) =
+                    (left[lane] / self.side - MARGIN, right[lane] / self.side + MARGIN);
+            }
+            for (lane, row) in (row..=last).take(LANES).enumerate() {
+                if left[lane] <= right[lane] {
+                    self.in_row(row, left[lane], right[lane], &mut hold);
+                }
             }
         }
+        look(&held[..count]);
     }
 
-    /// The points of a row between two x, each once.
+    /// The points of a row between two x, as shares of the side, each once: `hold` hears the first and how many there are.
     #[inline]
-    fn in_row(&self, row: i64, left: f64, right: f64, visit: &mut impl FnMut(u64, DVec2)) {
-        let residue = self.residue(row.rem_euclid(self.rows as i64) as u64);
-        let (left, right) = (left / self.side - MARGIN, right / self.side + MARGIN);
+    fn in_row(&self, row: i64, left: f64, right: f64, hold: &mut impl FnMut(u64, u64)) {
+        let residue = self.residue(if row < 0 { row + self.rows as i64 } else { row } as u64);
         let count = exact(self.count);
+        let (left, right) = (left.max(0.0), right.min(1.0));
+        let bottom = row as f64 * self.height + self.shift.y;
+        // A row that the torus cuts holds points of both sides.
+        let is_cut = if row < 0 { bottom < CUT } else { bottom + self.height > 1.0 - CUT };
         // What was carried around in x lies from 1 less the shift on.
-        for around_x in [false, true] {
-            let turn = f64::from(u8::from(around_x)) - self.shift.x;
-            let (from, to) = (left.max(0.0) + turn, right.min(1.0) + turn);
-            if from >= 1.0 || to < 0.0 {
+        for (numbers, turn) in [(0..self.turn, -self.shift.x), (self.turn..self.count, 1.0 - self.shift.x)] {
+            let (from, to) = (left + turn, right + turn);
+            if numbers.is_empty() || from >= 1.0 || to < 0.0 {
                 continue;
             }
-            let first = (from * count).max(0.0) as u64;
-            let end = ((to * count) as u64 + 1).min(self.count);
-            let mut index = residue + first.saturating_sub(residue).div_ceil(self.rows) * self.rows;
-            while index < end {
-                let moved = self.moved(index);
-                // A row or a run that the torus cuts holds points of both sides.
-                if (moved.x >= 1.0) == around_x && (moved.y >= 1.0) == (row < 0) {
-                    visit(index, DVec2::new(around(moved.x), around(moved.y)) * self.side);
+            let steps = (from * count - exact(residue)) * self.height;
+            let whole = steps as i64;
+            let steps = (whole + i64::from((whole as f64) < steps)).max(0) as u64;
+            let mut index = residue + steps * self.rows;
+            let end = ((to * count) as i64 as u64 + 1).min(numbers.end);
+            while index < numbers.start {
+                index += self.rows;
+            }
+            if !is_cut && index < end {
+                let further = end - 1 - index;
+                hold(index, 1 + if self.base == 2 { further >> self.digits } else { further / self.rows });
+            }
+            while is_cut && index < end {
+                if (self.moved(index).y >= 1.0) == (row < 0) {
+                    hold(index, 1);
                 }
                 index += self.rows;
             }
@@ -130,6 +224,9 @@ const ROWS: f64 = 1.0;
 
 /// Shares of the side by which cuts are wider than computed: far above rounding.
 const MARGIN: f64 = 1e-14;
+
+/// As a share of the side, how near to where the torus is cut a row is looked at closely: also far above rounding.
+const CUT: f64 = 1e-9;
 
 /// Whole numbers up to 2^53; a signed conversion is the faster one.
 #[inline]

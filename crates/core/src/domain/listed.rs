@@ -6,6 +6,7 @@ use glam::DVec2;
 
 use super::PlanarDomain;
 use super::cells::{Cells, Grid, Run};
+use crate::lanes::{LANES, Lanes};
 use crate::parallel;
 use crate::sequence::{self, Finder, Sequence};
 
@@ -121,15 +122,20 @@ impl Listed {
     }
 
     #[inline]
-    fn visit(&self, cells: Range<u32>, visit: &mut impl FnMut(u64, DVec2)) {
+    fn visit(&self, cells: Range<u32>, visit: &mut impl FnMut(&[u64], &[Lanes; 2])) {
         let slots = self.starts[cells.start as usize] as usize..self.starts[cells.end as usize] as usize;
-        for (slot, place) in (slots.start as u64..).zip(&self.places[slots]) {
-            visit(slot, *place);
+        for (some, first) in self.places[slots.clone()].chunks(LANES).zip(slots.step_by(LANES)) {
+            let slots: [u64; LANES] = std::array::from_fn(|lane| (first + lane) as u64);
+            let (mut x, mut y) = ([some[0].x; LANES], [some[0].y; LANES]);
+            for (lane, place) in some.iter().enumerate() {
+                (x[lane], y[lane]) = (place.x, place.y);
+            }
+            visit(&slots[..some.len()], &[x, y]);
         }
     }
 
     /// The points that may lie in the box.
-    pub(super) fn in_box(&self, low: DVec2, high: DVec2, visit: &mut impl FnMut(u64, DVec2)) {
+    pub(super) fn in_box(&self, low: DVec2, high: DVec2, visit: &mut impl FnMut(&[u64], &[Lanes; 2])) {
         let grid = self.cells.grid;
         let columns = grid.row(low.x)..grid.row(high.x) + 1;
         for row in grid.row(low.y)..=grid.row(high.y) {
@@ -140,7 +146,7 @@ impl Listed {
     }
 
     /// The points that may lie in the triangle.
-    pub(super) fn in_triangle(&self, corners: [DVec2; 3], visit: &mut impl FnMut(u64, DVec2)) {
+    pub(super) fn in_triangle(&self, corners: [DVec2; 3], visit: &mut impl FnMut(&[u64], &[Lanes; 2])) {
         for (row, columns) in self.cells.grid.near_triangle(corners, 0.0) {
             for cells in self.cells.in_row(row, columns) {
                 self.visit(cells, visit);

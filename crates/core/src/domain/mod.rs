@@ -8,6 +8,7 @@ mod listed;
 use glam::DVec2;
 
 use crate::ids::FaceId;
+use crate::lanes::{LANES, Lanes};
 use crate::sequence::{Finder, Sequence};
 use crate::unfold::Strips;
 pub(crate) use cells::TooManyCells;
@@ -153,9 +154,35 @@ impl DomainPoints {
         }
     }
 
+    /// Where the points of some slots lie.
+    #[inline]
+    pub(crate) fn places(&self, slots: &[u64; LANES]) -> [Lanes; 2] {
+        match &self.points {
+            Points::Listed(listed) => {
+                let places = slots.map(|slot| listed.at(slot as usize).0);
+                [places.map(|place| place.x), places.map(|place| place.y)]
+            }
+            Points::Lattice(lattice) => lattice.places(slots),
+        }
+    }
+
+    /// Which point of the sequence a slot's is.
+    #[inline]
+    pub(crate) fn index(&self, slot: u64) -> u64 {
+        match &self.points {
+            Points::Listed(listed) => listed.at(slot as usize).1,
+            Points::Lattice(_) => slot,
+        }
+    }
+
     /// Calls `visit` with the slot and the place of each point at most `reach` from the segment, each once, and of some
     /// farther away.
     pub(crate) fn along(&self, [from, to]: [DVec2; 2], reach: f64, mut visit: impl FnMut(u64, DVec2)) {
+        let mut visit = |slots: &[u64], [x, y]: &[Lanes; 2]| {
+            for (lane, &slot) in slots.iter().enumerate() {
+                visit(slot, DVec2::new(x[lane], y[lane]));
+            }
+        };
         match &self.points {
             Points::Listed(listed) => {
                 listed.in_box(from.min(to) - reach, from.max(to) + reach, &mut visit);
@@ -169,9 +196,10 @@ impl DomainPoints {
         }
     }
 
-    /// As [`along`](Self::along), in the triangle.
+    /// Calls `visit` with the slots and the places of the points in the triangle, some at a time, each point once, and of
+    /// some beside it. Lanes without a slot hold places of other points.
     #[inline]
-    pub(crate) fn in_triangle(&self, corners: [DVec2; 3], mut visit: impl FnMut(u64, DVec2)) {
+    pub(crate) fn in_triangle(&self, corners: [DVec2; 3], mut visit: impl FnMut(&[u64], &[Lanes; 2])) {
         match &self.points {
             Points::Listed(listed) => listed.in_triangle(corners, &mut visit),
             Points::Lattice(lattice) => lattice.in_polygon(corners, &mut visit),

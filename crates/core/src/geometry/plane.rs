@@ -3,6 +3,8 @@
 use glam::DVec2;
 use robust::{Coord, orient2d};
 
+use crate::lanes::{LANES, Lanes};
+
 fn coord(p: DVec2) -> Coord<f64> {
     Coord { x: p.x, y: p.y }
 }
@@ -37,6 +39,7 @@ const NEEDLE: f64 = 1e-6;
 
 /// Barycentric coordinates of `p` in the triangle, clamped to it (never negative, sum 1).
 /// A triangle without area gives its first corner.
+#[inline]
 pub fn barycentric(a: DVec2, b: DVec2, c: DVec2, p: DVec2) -> [f64; 3] {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let area = ab.perp_dot(ac);
@@ -52,8 +55,61 @@ pub fn barycentric(a: DVec2, b: DVec2, c: DVec2, p: DVec2) -> [f64; 3] {
     [1.0 - v - w, v, w]
 }
 
+/// A triangle in which many points are looked up.
+pub(crate) struct Triangle {
+    corners: [DVec2; 3],
+    ab: DVec2,
+    ac: DVec2,
+    area: f64,
+    /// Whether areas have no digits left, or there are none.
+    is_needle: bool,
+}
+
+impl Triangle {
+    #[inline]
+    pub(crate) fn new(corners: [DVec2; 3]) -> Self {
+        let [a, b, c] = corners;
+        let (ab, ac) = (b - a, c - a);
+        let area = ab.perp_dot(ac);
+        let longest = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared());
+        // True also where one of them is no number.
+        let is_needle = !(area != 0.0 && area.abs() >= NEEDLE * longest);
+        Self { corners, ab, ac, area, is_needle }
+    }
+
+    /// As [`barycentric`], to the bit.
+    #[inline]
+    pub(crate) fn barycentric(&self, [x, y]: &[Lanes; 2]) -> [Lanes; 3] {
+        let mut weights = [[0.0; LANES]; 3];
+        if self.is_needle {
+            let [a, b, c] = self.corners;
+            for lane in 0..LANES {
+                let of_lane = barycentric(a, b, c, DVec2::new(x[lane], y[lane]));
+                (0..3).for_each(|corner| weights[corner][lane] = of_lane[corner]);
+            }
+            return weights;
+        }
+        let Self { corners: [a, ..], ab, ac, area, .. } = *self;
+        for lane in 0..LANES {
+            let ap = DVec2::new(x[lane] - a.x, y[lane] - a.y);
+            let v = between(ap.perp_dot(ac) / area, 1.0);
+            let w = between(ab.perp_dot(ap) / area, 1.0 - v);
+            (weights[0][lane], weights[1][lane], weights[2][lane]) = (1.0 - v - w, v, w);
+        }
+        weights
+    }
+}
+
+/// Clamped to the numbers from 0 to `most`.
+#[inline]
+fn between(x: f64, most: f64) -> f64 {
+    let x = if x < 0.0 { 0.0 } else { x };
+    if x > most { most } else { x }
+}
+
 /// As [`barycentric`], where areas have no digits left: the place along the longest side counts, and rounding moves `p`
 /// across it alone, by less than the height.
+#[cold]
 fn in_needle(corners: [DVec2; 3], p: DVec2) -> [f64; 3] {
     let length = |i: usize| corners[i].distance_squared(corners[(i + 1) % 3]);
     let first = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j))).unwrap_or(0);

@@ -6,6 +6,7 @@ use crate::sequence::fraction;
 /// reversed and those beyond 53 cut off: exact for indices below 2^53. In other bases the mirrored number is built
 /// from whole numbers and divided once: rounded to nearest for indices below 2^53 / base, rounded down to a multiple
 /// of 2^-53 above. Never 1. A base below 2 has no digits and gives 0. Cost: one division a digit, none in base 2.
+#[inline]
 pub fn radical_inverse(index: u64, base: u32) -> f64 {
     match base {
         0 | 1 => 0.0,

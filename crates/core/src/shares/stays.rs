@@ -1,5 +1,7 @@
 //! One point for each region.
 
+use std::ops::Range;
+
 use crate::buckets::Buckets;
 use crate::correct::Pick;
 use crate::parallel;
@@ -10,7 +12,7 @@ pub(super) struct Candidate {
     pub(super) region: u32,
     /// The square of its distance from the middle of the region.
     pub(super) off: f32,
-    /// The face that caught it, and which of the face's points it is.
+    /// Those of a face come in the order in which it caught them.
     pub(super) pick: Pick,
 }
 
@@ -54,13 +56,7 @@ impl Stays {
         // What stays of a bucket if so many stayed before it and so many more are to.
         let stay = |bucket: usize, before: usize, more: usize| {
             let first = (next + bucket) * size;
-            let sorted = sorted(candidates.bucket(bucket).copied().collect(), first, size.min(count - first));
-            let (mut stay, spare) = split(&sorted, before);
-            stay.extend_from_slice(&spare[spare.len() - more..]);
-            // Not collected, which would keep the memory of candidates.
-            let mut picks = Vec::with_capacity(stay.len());
-            picks.extend(stay.iter().map(|c| c.pick));
-            Stay { picks, of: sorted.len() }
+            Stay::of(&candidates.to_vec(bucket), first..(first + size).min(count), before, more)
         };
         // As without a lack before any bucket, which holds for almost all of them.
         let mut stays = parallel::map(buckets, |bucket| stay(bucket, (next + bucket) * size, 0));
@@ -94,34 +90,56 @@ impl Stays {
     }
 }
 
-/// Those that stay if so many did before, and the others.
-fn split(candidates: &[Candidate], mut before: usize) -> (Vec<Candidate>, Vec<Candidate>) {
-    candidates.iter().partition(|c| {
-        let stays = before <= c.region as usize;
-        before += usize::from(stays);
-        stays
-    })
+impl Stay {
+    /// Of the candidates for some regions, if so many stayed before them; `more` of those that do not stay do so
+    /// nevertheless, the last ones.
+    fn of(candidates: &[Candidate], regions: Range<usize>, mut before: usize, more: usize) -> Self {
+        let own = |c: &Candidate| c.region as usize - regions.start;
+        let mut counts = vec![0_u32; regions.len()];
+        let mut best = vec![(u64::MAX, 0_u32); regions.len()];
+        for (at, c) in (0..).zip(candidates) {
+            let region = own(c);
+            counts[region] += 1;
+            let found = (c.rank(), at);
+            best[region] = if found.0 < best[region].0 { found } else { best[region] };
+        }
+        let mut picks = Vec::with_capacity(regions.len());
+        // Of a region that has more than its best candidate stay the number that do. There are few, but where all are
+        // to be looked at.
+        let mut several = vec![None; if more > 0 { regions.len() } else { 0 }];
+        for (region, &count) in counts.iter().enumerate() {
+            let due = (regions.start + region + 1).saturating_sub(before).min(count as usize);
+            before += due;
+            if due == 1 && more == 0 {
+                picks.push(candidates[best[region].1 as usize].pick);
+            } else if due > 1 || (more > 0 && count > 0) {
+                several.resize(regions.len(), None);
+                several[region] = Some(due);
+            }
+        }
+        if several.is_empty() {
+            return Self { picks, of: candidates.len() };
+        }
+        let mut others: Vec<&Candidate> = candidates.iter().filter(|c| several[own(c)].is_some()).collect();
+        others.sort_by_key(|c| (c.region, c.rank()));
+        let mut spare = Vec::new();
+        for of_region in others.chunk_by(|a, b| a.region == b.region) {
+            let (stay, rest) = of_region.split_at(several[own(of_region[0])].unwrap_or(0));
+            picks.extend(stay.iter().map(|c| c.pick));
+            spare.extend(rest.iter().map(|c| c.pick));
+        }
+        picks.extend_from_slice(&spare[spare.len() - more..]);
+        Self { picks, of: candidates.len() }
+    }
 }
 
-/// By region, the most central first, then by face and number. Regions are `count` from `first` on.
-fn sorted(candidates: Vec<Candidate>, first: usize, count: usize) -> Vec<Candidate> {
-    let mut cursor = vec![0_u32; count + 1];
-    for c in &candidates {
-        cursor[c.region as usize - first + 1] += 1;
+impl Candidate {
+    /// The most central one of a region is the least, then that of the first face; those of a face stay as they came.
+    #[inline]
+    fn rank(&self) -> u64 {
+        // Numbers from 0 up are in the order of their bits.
+        u64::from(self.off.to_bits()) << 32 | u64::from(self.pick.face.0)
     }
-    for region in 0..count {
-        cursor[region + 1] += cursor[region];
-    }
-    let mut sorted = candidates.clone();
-    for c in candidates {
-        let slot = &mut cursor[c.region as usize - first];
-        sorted[*slot as usize] = c;
-        *slot += 1;
-    }
-    for of_region in sorted.chunk_by_mut(|a, b| a.region == b.region) {
-        of_region.sort_unstable_by(|a, b| a.off.total_cmp(&b.off).then(a.pick.cmp(&b.pick)));
-    }
-    sorted
 }
 
 #[cfg(test)]
@@ -138,7 +156,7 @@ mod tests {
         fn buckets_do_not_matter(found in prop::collection::vec((0..40u32, 0..9u8), 0..120), size in 1..50usize) {
             let count = 40_usize;
             let candidate = |(nth, &(region, off)): (u32, &(u32, u8))| {
-                Candidate { region, off: f32::from(off), pick: Pick { face: FaceId(nth % 7), nth } }
+                Candidate { region, off: f32::from(off), pick: Pick::new(FaceId(nth % 7), u64::from(nth)) }
             };
             let all: Vec<Candidate> = (0..).zip(&found).map(candidate).collect();
             let piece = |p: usize| all.iter().copied().skip(p * 10).take(10).collect();
@@ -149,13 +167,13 @@ mod tests {
             if !is_enough {
                 return Ok(());
             }
-            let mut stay: Vec<u32> = stays.into_picks().concat().iter().map(|pick| pick.nth).collect();
+            let mut stay: Vec<u64> = stays.into_picks().concat().iter().map(|pick| pick.slot()).collect();
             stay.sort_unstable();
             let mut order = all.clone();
-            order.sort_by_key(|c| (c.region, c.off as u32, c.pick));
+            order.sort_by_key(|c| (c.region, c.off as u32, c.pick.face));
             let (mut expected, mut spare) = (Vec::new(), Vec::new());
             for c in order {
-                if expected.len() <= c.region as usize { expected.push(c.pick.nth) } else { spare.push(c.pick.nth) }
+                if expected.len() <= c.region as usize { expected.push(c.pick.slot()) } else { spare.push(c.pick.slot()) }
             }
             let missing = count - expected.len();
             expected.extend(&spare[spare.len() - missing..]);

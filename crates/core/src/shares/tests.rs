@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::*;
-use crate::correct::{Keep, Picks};
+use crate::correct::{Corrected, Keep, Picks};
 use crate::domain::{DomainPoints, PlanarDomain};
 use crate::planted;
 use crate::segment::{SegmentOptions, segment};
@@ -13,23 +13,24 @@ use crate::unfold::{Strips, unfold};
 use crate::wrap::wrap;
 
 /// What `f` makes of `caught` points of a mesh.
-fn with_caught<R>(mesh: &SurfaceMesh, caught: f64, f: impl FnOnce(&Mended<'_>) -> R) -> R {
+fn with_caught<R>(mesh: &SurfaceMesh, caught: f64, f: impl FnOnce(&Caught<'_>) -> R) -> R {
     let strips: Strips = unfold(mesh, &segment(mesh, &SegmentOptions::default()));
     let domain = PlanarDomain::lay_out(&strips);
     let count = (caught * domain.room(mesh.area())) as u32;
     let points = DomainPoints::scatter(&domain, &Sequence::default(), count, glam::DVec2::ZERO);
     let wrapping = wrap(&strips, &domain, &points);
-    let mended = Mended::new(mesh, &strips, &domain, Cow::Borrowed(&points), wrapping, 0.0);
-    f(&mended)
+    let caught = Caught::new(mesh, &strips, &domain, Cow::Borrowed(&points), wrapping, 0.0);
+    f(&caught)
 }
 
 /// What stays of `caught` points of a mesh when `n` are wanted.
 fn chosen(mesh: &SurfaceMesh, caught: f64, n: usize) -> Option<Vec<Corrected>> {
-    with_caught(mesh, caught, |mended| {
-        let picks = Picks::new(mended, Regions::new(mesh, &Density::UNIFORM, n).choose(mended)?);
+    with_caught(mesh, caught, |caught| {
+        let mended = caught.mended();
+        let picks = Picks::new(mended, Regions::new(mesh, &Density::UNIFORM, n).choose(caught)?);
         let mut chosen = Vec::new();
         let blocks = picks.blocks(mended, Keep::All, |block| {
-            chosen.extend(block.iter().map(|c| **c));
+            chosen.extend(block.iter().map(|&pick| mended.corrected(pick)));
             Ok::<(), std::convert::Infallible>(())
         });
         blocks.ok().map(|()| chosen)
@@ -43,16 +44,16 @@ fn candidates_may_come_some_at_a_time() {
     for mesh in [planted::mesh(&shapes::cube(1)), planted::mesh(&Shape::Sphere.generate())] {
         let regions = Regions::new(&mesh, &Density::UNIFORM, n);
         for (surplus, fewest) in [(2.0, 9000), (1.01, 40_000)] {
-            with_caught(&mesh, surplus * n as f64, |mended| {
-                let all = regions.choose_by(mended, usize::MAX).expect("enough");
+            with_caught(&mesh, surplus * n as f64, |caught| {
+                let all = regions.choose_by(caught, usize::MAX).expect("enough");
                 assert_eq!(all.iter().map(Vec::len).sum::<usize>(), n);
                 for together in [fewest, 50_000] {
-                    assert!(regions.choose_by(mended, together).is_none_or(|some| some == all));
+                    assert!(regions.choose_by(caught, together).is_none_or(|some| some == all));
                 }
-                assert!(surplus < 2.0 || regions.choose_by(mended, fewest).is_some());
+                assert!(surplus < 2.0 || regions.choose_by(caught, fewest).is_some());
             });
         }
-        with_caught(&mesh, 0.99 * n as f64, |mended| assert!(regions.choose(mended).is_none()));
+        with_caught(&mesh, 0.99 * n as f64, |caught| assert!(regions.choose(caught).is_none()));
     }
 }
 
@@ -61,6 +62,7 @@ fn regions_of_a_square_are_quarters_of_quarters() {
     let mesh = planted::mesh(&shapes::square(16));
     let (low, high) = mesh.bounds();
     let regions = Regions::new(&mesh, &Density::UNIFORM, 16);
+    let centroids = |range| regions.centroids(range, |at| regions.face(at));
     let mut expected: Vec<(i32, i32)> = Vec::new();
     let mut found: Vec<(i32, i32)> = Vec::new();
     for i in 0..4 {
@@ -68,20 +70,14 @@ fn regions_of_a_square_are_quarters_of_quarters() {
             expected.push((250 * i + 125, 250 * j + 125));
         }
     }
-    for centroid in regions.centroids(0..16) {
+    for centroid in centroids(0..16) {
         let at = (centroid - low) / (high - low).max_element() * 1000.0;
         found.push((at.x.round() as i32, at.y.round() as i32));
     }
     found.sort_unstable();
     assert_eq!(found, expected);
     // Whatever part of the row is looked at.
-    assert!(
-        regions
-            .centroids(5..11)
-            .iter()
-            .zip(&regions.centroids(0..16)[5..])
-            .all(|(a, b)| a.distance(*b) < 1e-12)
-    );
+    assert!(centroids(5..11).iter().zip(&centroids(0..16)[5..]).all(|(a, b)| a.distance(*b) < 1e-12));
 }
 
 #[test]

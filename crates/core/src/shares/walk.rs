@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::geometry::triangle;
 use crate::ids::FaceId;
+use crate::lanes::{self, LANES, Lanes};
 use crate::mesh::SurfaceMesh;
 
 /// No face is halved more often than this.
@@ -14,6 +15,7 @@ const DEEPEST: u32 = 24;
 const LONG: f64 = 3.0;
 
 /// The walk through one face.
+#[derive(Clone, Copy)]
 pub(super) struct Walk {
     /// Where it enters, where it leaves, and the third corner.
     corners: [DVec3; 3],
@@ -22,6 +24,7 @@ pub(super) struct Walk {
     way: Way,
 }
 
+#[derive(Clone, Copy)]
 enum Way {
     /// As Sierpinski's curve: the triangle is halved from the third corner, the walk goes through one half and then the
     /// other, and so on, so many times. Halves are as long and as high as the triangle.
@@ -214,6 +217,41 @@ impl Walk {
         }
     }
 
+    /// As [`share`](Self::share), of some places.
+    #[inline]
+    pub(super) fn shares(&self, barycentric: &[Lanes; 3]) -> Lanes {
+        let Way::Halves(depth) = self.way else {
+            return std::array::from_fn(|lane| self.share(barycentric.map(|weight| weight[lane])));
+        };
+        let mut whole = [[0; LANES]; 3];
+        for (whole, &corner) in whole.iter_mut().zip(&self.order) {
+            let mut scaled = barycentric[corner];
+            scaled.iter_mut().for_each(|weight| *weight *= f64::from(1 << 30));
+            *whole = lanes::floor(&scaled);
+        }
+        let [mut from, mut to, mut apex] = whole;
+        let mut passed = [0_i32; LANES];
+        for _ in 0..depth {
+            for lane in 0..LANES {
+                let apart = from[lane] - to[lane];
+                // All bits of it.
+                let second = apart >> 31;
+                let rest = (apart ^ second) - second;
+                let near = to[lane] + (apart & second);
+                let swap = (apex[lane] ^ rest) & second;
+                (from[lane], to[lane], apex[lane]) = (rest ^ swap, apex[lane] ^ swap, 2 * near);
+                passed[lane] = 2 * passed[lane] - second;
+            }
+        }
+        // A power of two, so this is exact.
+        let part = 1.0 / f64::from(1_u32 << depth);
+        let mut shares = [0.0; LANES];
+        for lane in 0..LANES {
+            shares[lane] = (f64::from(passed[lane]) + 0.5) * part;
+        }
+        shares
+    }
+
     /// The integral of the walk's place up to a share of the time.
     pub(super) fn moment(&self, table: &Table, share: f64) -> DVec3 {
         let [from, to, apex] = self.corners;
@@ -240,11 +278,19 @@ impl Walk {
         }
     }
 
-    /// Where a place of the face lies in space.
+    /// Where places of the face lie in space.
     #[inline]
-    pub(super) fn position(&self, barycentric: [f64; 3]) -> DVec3 {
-        let [from, to, apex] = self.order.map(|c| barycentric[c]);
-        triangle::at(self.corners[0], self.corners[1], self.corners[2], [from, to, apex])
+    pub(super) fn positions(&self, barycentric: &[Lanes; 3]) -> [Lanes; 3] {
+        let [from, to, apex] = self.corners.map(|corner| corner.to_array());
+        let [at_from, at_to, at_apex] = self.order.map(|corner| &barycentric[corner]);
+        let mut positions = [[0.0; LANES]; 3];
+        for axis in 0..3 {
+            for lane in 0..LANES {
+                positions[axis][lane] =
+                    from[axis] * at_from[lane] + to[axis] * at_to[lane] + apex[axis] * at_apex[lane];
+            }
+        }
+        positions
     }
 }
 
@@ -307,7 +353,8 @@ mod tests {
                             let [u, v] =
                                 [f64::from(i), f64::from(j)].map(|k| (k + third / 3.0) / f64::from(steps));
                             let weights = [u, v, 1.0 - u - v];
-                            places.push((walk.share(weights), walk.position(weights) * weight));
+                            let [x, y, z] = walk.positions(&weights.map(|w| [w; LANES])).map(|axis| axis[0]);
+                            places.push((walk.share(weights), DVec3::new(x, y, z) * weight));
                         }
                     }
                 }
