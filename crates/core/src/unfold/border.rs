@@ -7,21 +7,29 @@ use super::{BorderEdge, FacePlace, Twin};
 use crate::ids::{HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
+use crate::segment::Segment;
 
 /// So many edges are changed together.
 const PIECE: usize = 1 << 12;
 
+/// A side in the border, and the planar vertex at which it starts.
+#[derive(Clone, Copy)]
+struct Step {
+    side: HalfedgeId,
+    from: u32,
+}
+
 /// The sides in the border, loop after loop, and where the loops lie among them.
 pub(super) struct Loops {
-    sides: Vec<u32>,
+    steps: Vec<Step>,
     pub(super) loops: Vec<Range<usize>>,
 }
 
 impl Loops {
-    /// The way around a tree of triangles, along all sides but those at which one hangs on another: it has as many sides
+    /// The way around a tree of triangles, along all sides but those at which one hangs on another: it has as many steps
     /// behind a triangle's side as those that hang there have together. Linear time.
-    pub(super) fn around(links: &[Link]) -> Self {
-        // How many sides the way has behind each side; itself if nothing hangs there.
+    pub(super) fn around(segment: &Segment, links: &[Link]) -> Self {
+        // How many steps the way has behind each side; one if nothing hangs there.
         let mut lengths = vec![[1_u32; 3]; links.len()];
         for (i, link) in links.iter().enumerate().rev() {
             if let Some(on) = link.on() {
@@ -29,38 +37,54 @@ impl Loops {
                 lengths[on as usize / 3][on as usize % 3] = lengths[i].iter().sum::<u32>() - 1;
             }
         }
-        // The lengths give way to where the sides lie.
+        // The lengths give way to the first steps.
         let mut starts = lengths;
-        let mut sides = Vec::new();
-        let mut loops = Vec::new();
-        for (i, link) in links.iter().enumerate() {
-            let side = |corner: usize| 3 * i as u32 + corner as u32;
-            // Where a triangle hangs its own sides, which come later, take the place.
+        let mut steps: Vec<Step> = Vec::new();
+        let mut roots = Vec::new();
+        let mut vertex = 0;
+        for (i, (link, attachment)) in links.iter().zip(&segment.attachments).enumerate() {
+            let side = |corner: usize| HalfedgeId::of(attachment.face, corner);
+            // Where a triangle hangs its own sides, which come later, take the place. The first starts where the side did
+            // on which it hangs.
             if let Some(on) = link.on() {
                 let (one, other) = (NEXT[link.corner()], NEXT[NEXT[link.corner()]]);
                 let start = starts[on as usize / 3][on as usize % 3];
                 let middle = start + starts[i][one];
                 starts[i][one] = start;
                 starts[i][other] = middle;
-                sides[start as usize] = side(one);
-                sides[middle as usize] = side(other);
+                steps[start as usize].side = side(one);
+                steps[middle as usize] = Step { side: side(other), from: vertex };
+                vertex += 1;
             } else {
-                let start = sides.len();
+                let start = steps.len();
                 for corner in 0..3 {
                     let length = starts[i][corner] as usize;
-                    starts[i][corner] = sides.len() as u32;
-                    sides.resize(sides.len() + length, side(corner));
+                    starts[i][corner] = steps.len() as u32;
+                    steps.resize(steps.len() + length, Step { side: side(corner), from: vertex });
+                    vertex += 1;
                 }
-                loops.push(start..sides.len());
+                roots.push((i, start..steps.len()));
             }
         }
-        for range in &loops {
-            let around = &mut sides[range.clone()];
-            if let Some((first, _)) = around.iter().enumerate().min_by_key(|(_, side)| **side) {
-                around.rotate_left(first);
+        // Each loop starts with the side that is first among those of the strip's faces.
+        for (root, range) in &roots {
+            let first = (*root..starts.len())
+                .flat_map(|i| [0, 1, 2].map(|corner| (i, corner)))
+                .map(|(i, corner)| {
+                    (starts[i][corner] as usize, HalfedgeId::of(segment.attachments[i].face, corner))
+                })
+                .find(|&(step, side)| range.contains(&step) && steps[step].side == side);
+            if let Some((first, _)) = first {
+                steps[range.clone()].rotate_left(first - range.start);
             }
         }
-        Self { sides, loops }
+        Self { steps, loops: roots.into_iter().map(|(_, range)| range).collect() }
+    }
+
+    /// The step after one.
+    fn next(&self, step: usize) -> usize {
+        let range = &self.loops[self.loops.partition_point(|range| range.end <= step)];
+        if step + 1 == range.end { range.start } else { step + 1 }
     }
 
     /// The edges of the border.
@@ -71,11 +95,10 @@ impl Loops {
         places: &[FacePlace],
         planar: &Planar,
     ) -> Vec<BorderEdge> {
-        parallel::map(self.sides.len(), |i| {
-            let side = self.sides[i];
-            let (from, to) = planar.ends(side);
-            let halfedge = HalfedgeId::of(planar.faces[side as usize / 3], side as usize % 3);
-            let twin = mesh.topology().twin(halfedge).map_or(Twin::MeshBorder, |twin| {
+        parallel::map(self.steps.len(), |i| {
+            let Step { side, from } = self.steps[i];
+            let to = self.steps[self.next(i)].from;
+            let twin = mesh.topology().twin(side).map_or(Twin::MeshBorder, |twin| {
                 let place = places[twin.face().index()];
                 if place.strip == strip {
                     let (to, from) = planar.ends(3 * place.index + twin.corner() as u32);
@@ -84,14 +107,15 @@ impl Loops {
                     Twin::OtherStrip(place.strip)
                 }
             });
-            BorderEdge { halfedge, from, to, twin }
+            BorderEdge { halfedge: side, from, to, twin }
         })
     }
 
     /// What is left of the border, whose edges are given, when edges that coincide with their copies are none.
     pub(super) fn without_closed(
-        self,
+        &self,
         mesh: &SurfaceMesh,
+        places: &[FacePlace],
         edges: &[BorderEdge],
     ) -> (Vec<BorderEdge>, Vec<Range<usize>>) {
         let is_closed = |i: usize| {
@@ -105,9 +129,9 @@ impl Loops {
             let twin = mesh.topology().twin(edges[i].halfedge)?;
             closed.binary_search_by_key(&twin, |edge| edge.0).ok().map(|found| closed[found].1)
         };
-        let next = |i: usize| {
-            let range = &self.loops[self.loops.partition_point(|range| range.end <= i)];
-            if i + 1 == range.end { range.start } else { i + 1 }
+        let number = |i: usize| {
+            let side = edges[i].halfedge;
+            (places[side.face().index()].index, side.corner())
         };
         let mut left: Vec<bool> = (0..edges.len()).map(|i| !is_closed(i)).collect();
         let mut loops = Vec::new();
@@ -117,18 +141,18 @@ impl Loops {
             while left[i] {
                 left[i] = false;
                 around.push(i);
-                i = next(i);
+                i = self.next(i);
                 // Across edges that are none.
                 while let Some(copy) = Some(i).filter(|&i| is_closed(i)).and_then(copy) {
-                    i = next(copy);
+                    i = self.next(copy);
                 }
             }
-            if let Some((smallest, _)) = around.iter().enumerate().min_by_key(|(_, i)| self.sides[**i]) {
+            if let Some((smallest, _)) = around.iter().enumerate().min_by_key(|(_, i)| number(**i)) {
                 around.rotate_left(smallest);
                 loops.push(around);
             }
         }
-        loops.sort_unstable_by_key(|around| self.sides[around[0]]);
+        loops.sort_unstable_by_key(|around| number(around[0]));
         let mut start = 0;
         let ranges = loops.iter().map(|around| {
             start += around.len();

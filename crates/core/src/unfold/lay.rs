@@ -92,9 +92,8 @@ struct Shape {
 impl Shape {
     fn new(mesh: &SurfaceMesh, face: FaceId, first: usize) -> Self {
         let corners = mesh.topology().corners(face);
-        let (second, third) = (NEXT[first], NEXT[NEXT[first]]);
-        let [a, b, c] = [first, second, third].map(|corner| mesh.position(corners[corner]));
-        let (length, x, y) = triangle::flatten(a, b, c);
+        let at = |corner: usize| mesh.position(corners[corner]);
+        let (length, x, y) = triangle::flatten(at(first), at(NEXT[first]), at(NEXT[NEXT[first]]));
         Self { apex: DVec2::new(x, y), length, area: mesh.face_area(face) }
     }
 }

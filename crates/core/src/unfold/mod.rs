@@ -153,7 +153,8 @@ pub fn unfold(mesh: &SurfaceMesh, segmentation: &Segmentation) -> Strips {
 fn lay_strip(mesh: &SurfaceMesh, strip: StripId, segment: &Segment, places: &[FacePlace]) -> Strip {
     let links = lay::links(mesh, segment, places);
     // The way along the border does not depend on where triangles lie, unless edges coincide.
-    let (mut planar, border) = parallel::join(|| lay::lay(mesh, segment, &links), || Loops::around(&links));
+    let (mut planar, border) =
+        parallel::join(|| lay::lay(mesh, segment, &links), || Loops::around(segment, &links));
     drop(links);
     let mut edges = border.edges(mesh, strip, places, &planar);
     let (border, loops) = match seams::coincident(&planar.vertices, &edges) {
@@ -161,7 +162,7 @@ fn lay_strip(mesh: &SurfaceMesh, strip: StripId, segment: &Segment, places: &[Fa
         Some(first) => {
             planar.rename(&first);
             border::rename(&mut edges, &first);
-            border.without_closed(mesh, &edges)
+            border.without_closed(mesh, places, &edges)
         }
     };
     let extent = lay::settle(&mut planar.vertices);
