@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::lay::{Link, NEXT, Planar};
+use super::lay::{Links, NEXT, Planar, first_corner};
 use super::{BorderEdge, FacePlace, Twin};
 use crate::ids::{HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
@@ -28,11 +28,12 @@ pub(super) struct Loops {
 impl Loops {
     /// The way around a tree of triangles, along all sides but those at which one hangs on another: it has as many steps
     /// behind a triangle's side as those that hang there have together. Linear time.
-    pub(super) fn around(segment: &Segment, links: &[Link]) -> Self {
+    pub(super) fn around(segment: &Segment, links: &Links) -> Self {
         // How many steps the way has behind each side; one if nothing hangs there.
-        let mut lengths = vec![[1_u32; 3]; links.len()];
-        for (i, link) in links.iter().enumerate().rev() {
-            if let Some(on) = link.on() {
+        let attachments = &segment.attachments[..];
+        let mut lengths = vec![[1_u32; 3]; attachments.len()];
+        for i in (0..attachments.len()).rev() {
+            if let Some(on) = links.of(i) {
                 // All but the side that is attached.
                 lengths[on as usize / 3][on as usize % 3] = lengths[i].iter().sum::<u32>() - 1;
             }
@@ -42,12 +43,13 @@ impl Loops {
         let mut steps: Vec<Step> = Vec::new();
         let mut roots = Vec::new();
         let mut vertex = 0;
-        for (i, (link, attachment)) in links.iter().zip(&segment.attachments).enumerate() {
+        for (i, attachment) in attachments.iter().enumerate() {
             let side = |corner: usize| HalfedgeId::of(attachment.face, corner);
             // Where a triangle hangs its own sides, which come later, take the place. The first starts where the side did
             // on which it hangs.
-            if let Some(on) = link.on() {
-                let (one, other) = (NEXT[link.corner()], NEXT[NEXT[link.corner()]]);
+            if let Some(on) = links.of(i) {
+                let one = NEXT[first_corner(attachment)];
+                let other = NEXT[one];
                 let start = starts[on as usize / 3][on as usize % 3];
                 let middle = start + starts[i][one];
                 starts[i][one] = start;
@@ -70,9 +72,7 @@ impl Loops {
         for (root, range) in &roots {
             let first = (*root..starts.len())
                 .flat_map(|i| [0, 1, 2].map(|corner| (i, corner)))
-                .map(|(i, corner)| {
-                    (starts[i][corner] as usize, HalfedgeId::of(segment.attachments[i].face, corner))
-                })
+                .map(|(i, corner)| (starts[i][corner] as usize, HalfedgeId::of(attachments[i].face, corner)))
                 .find(|&(step, side)| range.contains(&step) && steps[step].side == side);
             if let Some((first, _)) = first {
                 steps[range.clone()].rotate_left(first - range.start);
@@ -129,37 +129,39 @@ impl Loops {
             let twin = mesh.topology().twin(edges[i].halfedge)?;
             closed.binary_search_by_key(&twin, |edge| edge.0).ok().map(|found| closed[found].1)
         };
-        let number = |i: usize| {
-            let side = edges[i].halfedge;
+        let number = |i: u32| {
+            let side = edges[i as usize].halfedge;
             (places[side.face().index()].index, side.corner())
         };
         let mut left: Vec<bool> = (0..edges.len()).map(|i| !is_closed(i)).collect();
-        let mut loops = Vec::new();
+        let mut order: Vec<u32> = Vec::with_capacity(edges.len());
+        let mut loops: Vec<Range<usize>> = Vec::new();
         for first in 0..edges.len() {
-            let mut around = Vec::new();
+            let start = order.len();
             let mut i = first;
             while left[i] {
                 left[i] = false;
-                around.push(i);
+                order.push(i as u32);
                 i = self.next(i);
                 // Across edges that are none.
                 while let Some(copy) = Some(i).filter(|&i| is_closed(i)).and_then(copy) {
                     i = self.next(copy);
                 }
             }
+            let around = &mut order[start..];
             if let Some((smallest, _)) = around.iter().enumerate().min_by_key(|(_, i)| number(**i)) {
                 around.rotate_left(smallest);
-                loops.push(around);
+                loops.push(start..order.len());
             }
         }
-        loops.sort_unstable_by_key(|around| number(around[0]));
-        let mut start = 0;
-        let ranges = loops.iter().map(|around| {
-            start += around.len();
-            start - around.len()..start
-        });
-        let ranges = ranges.collect();
-        (loops.into_iter().flatten().map(|i| edges[i]).collect(), ranges)
+        loops.sort_unstable_by_key(|range| number(order[range.start]));
+        let mut rest = Vec::with_capacity(order.len());
+        for range in &mut loops {
+            let start = rest.len();
+            rest.extend(order[range.clone()].iter().map(|&i| edges[i as usize]));
+            *range = start..rest.len();
+        }
+        (rest, loops)
     }
 }
 

@@ -44,40 +44,30 @@ impl Planar {
     }
 }
 
-/// How a triangle hangs on the one before it in the segment.
-#[derive(Clone, Copy)]
-pub(super) struct Link {
-    /// One more than the side of the strip's faces that it is attached to; `None` for the first triangle.
-    on: Option<NonZero<u32>>,
-    /// Where its side starts that is attached.
-    corner: u32,
-}
+/// For each triangle of a segment the side of the strip's faces that it is attached to; none for the first one.
+pub(super) struct Links(Vec<Option<NonZero<u32>>>);
 
-impl Link {
-    fn new(mesh: &SurfaceMesh, attachment: &Attachment, places: &[FacePlace]) -> Self {
-        let corner = attachment.across.map_or(0, HalfedgeId::corner) as u32;
-        let twin = attachment.across.and_then(|across| mesh.topology().twin(across));
-        let side = |twin: HalfedgeId| 3 * places[twin.face().index()].index + twin.corner() as u32;
-        Self { on: twin.and_then(|twin| NonZero::new(side(twin) + 1)), corner }
+impl Links {
+    pub(super) fn new(mesh: &SurfaceMesh, segment: &Segment, places: &[FacePlace]) -> Self {
+        let attachments = &segment.attachments[..];
+        let link = |i: usize| {
+            let twin = mesh.topology().twin(attachments[i].across?)?;
+            // One more than its number, which needs no room to say that there is none.
+            NonZero::new(3 * places[twin.face().index()].index + twin.corner() as u32 + 1)
+        };
+        Self(parallel::map(attachments.len(), link))
     }
 
-    /// The side of the strip's faces that it is attached to.
     #[inline]
-    pub(super) fn on(&self) -> Option<u32> {
-        self.on.map(|number| number.get() - 1)
-    }
-
-    /// Where its side starts that is attached.
-    #[inline]
-    pub(super) fn corner(&self) -> usize {
-        self.corner as usize
+    pub(super) fn of(&self, i: usize) -> Option<u32> {
+        self.0[i].map(|number| number.get() - 1)
     }
 }
 
-/// How each triangle of a segment hangs on the others.
-pub(super) fn links(mesh: &SurfaceMesh, segment: &Segment, places: &[FacePlace]) -> Vec<Link> {
-    let attachments = &segment.attachments[..];
-    parallel::map(attachments.len(), |i| Link::new(mesh, &attachments[i], places))
+/// The corner at which the side of a face starts that is attached.
+#[inline]
+pub(super) fn first_corner(attachment: &Attachment) -> usize {
+    attachment.across.map_or(0, HalfedgeId::corner)
 }
 
 /// A triangle by itself.
@@ -90,7 +80,8 @@ struct Shape {
 }
 
 impl Shape {
-    fn new(mesh: &SurfaceMesh, face: FaceId, first: usize) -> Self {
+    fn new(mesh: &SurfaceMesh, attachment: &Attachment) -> Self {
+        let (face, first) = (attachment.face, first_corner(attachment));
         let corners = mesh.topology().corners(face);
         let at = |corner: usize| mesh.position(corners[corner]);
         let (length, x, y) = triangle::flatten(at(first), at(NEXT[first]), at(NEXT[NEXT[first]]));
@@ -99,7 +90,7 @@ impl Shape {
 }
 
 /// Lays the triangles along the segment's spanning tree.
-pub(super) fn lay(mesh: &SurfaceMesh, segment: &Segment, links: &[Link]) -> Planar {
+pub(super) fn lay(mesh: &SurfaceMesh, segment: &Segment, links: &Links) -> Planar {
     let attachments = &segment.attachments[..];
     let count = attachments.len();
     let mut planar = Planar {
@@ -113,14 +104,13 @@ pub(super) fn lay(mesh: &SurfaceMesh, segment: &Segment, links: &[Link]) -> Plan
     const PIECE: usize = 1 << 13;
     let piece = |start: usize| start..(start + PIECE).min(count);
     let shapes = |piece: Range<usize>| {
-        let shape =
-            |i: usize| Shape::new(mesh, attachments[piece.start + i].face, links[piece.start + i].corner());
+        let shape = |i: usize| Shape::new(mesh, &attachments[piece.start + i]);
         parallel::map(piece.len(), shape)
     };
     let mut next = shapes(piece(0));
     for start in (0..count).step_by(PIECE) {
         let ready = std::mem::take(&mut next);
-        let lay = || planar.extend(&links[piece(start)], ready);
+        let lay = || planar.extend(&attachments[piece(start)], links, ready);
         ((), next) = parallel::join(lay, || shapes(piece((start + PIECE).min(count))));
     }
     planar
@@ -128,18 +118,18 @@ pub(super) fn lay(mesh: &SurfaceMesh, segment: &Segment, links: &[Link]) -> Plan
 
 impl Planar {
     /// Lays the next triangles.
-    fn extend(&mut self, links: &[Link], shapes: Vec<Shape>) {
+    fn extend(&mut self, attachments: &[Attachment], links: &Links, shapes: Vec<Shape>) {
         let mut sum = self.area;
-        for (link, Shape { apex, length, area }) in links.iter().zip(shapes) {
+        for (attachment, Shape { apex, length, area }) in attachments.iter().zip(shapes) {
             let third = self.vertices.len() as u32;
-            let corners = match link.on() {
+            let corners = match links.of(self.corners.len()) {
                 Some(on) => {
                     // The side runs the other way.
                     let (to, from) = self.ends(on);
                     let a = self.vertices[from as usize];
                     let along = (self.vertices[to as usize] - a).try_normalize().unwrap_or(DVec2::X);
                     self.vertices.push(a + along * apex.x + along.perp() * apex.y);
-                    turned([from, to, third], link.corner())
+                    turned([from, to, third], first_corner(attachment))
                 }
                 None => {
                     self.vertices.extend([DVec2::ZERO, DVec2::new(length, 0.0), apex]);

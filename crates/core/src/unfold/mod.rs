@@ -14,7 +14,7 @@ use crate::parallel;
 use crate::sample::SurfacePoint;
 use crate::segment::{Segment, Segmentation};
 use border::Loops;
-use lay::Planar;
+use lay::{Links, Planar};
 
 /// What lies on the other side of a border edge of a strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,7 +151,7 @@ pub fn unfold(mesh: &SurfaceMesh, segmentation: &Segmentation) -> Strips {
 }
 
 fn lay_strip(mesh: &SurfaceMesh, strip: StripId, segment: &Segment, places: &[FacePlace]) -> Strip {
-    let links = lay::links(mesh, segment, places);
+    let links = Links::new(mesh, segment, places);
     // The way along the border does not depend on where triangles lie, unless edges coincide.
     let (mut planar, border) =
         parallel::join(|| lay::lay(mesh, segment, &links), || Loops::around(segment, &links));
