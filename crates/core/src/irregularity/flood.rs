@@ -6,19 +6,13 @@
 //! ends can, that end passes on alone. It stops at a face or side all of which is nearer to another edge, because
 //! so is everything behind it.
 
+use std::num::NonZero;
+
 use glam::DVec2;
 
 use super::capsule::Segment;
+use crate::parallel;
 use crate::unfold::{Strip, Twin};
-
-/// For each face of a strip how the zone reaches it.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Near {
-    /// All of the face is nearer than d_m to one open edge.
-    Whole,
-    /// Its points may be nearer than d_m to these sources and to no others.
-    Sources(Vec<u32>),
-}
 
 /// What is flooded: the open edges, numbered from 0, and behind them all their starts and all their ends.
 pub(super) struct Sources {
@@ -33,18 +27,21 @@ impl Sources {
     /// A source as a segment, which has no length if it is an end.
     pub(super) fn segment(&self, source: u32) -> Segment {
         let source = source as usize;
-        let edge = self.edges[source % self.edges.len()];
-        match source / self.edges.len() {
-            0 => edge,
-            1 => Segment { from: edge.from, to: edge.from },
-            _ => Segment { from: edge.to, to: edge.to },
+        let count = self.edges.len();
+        if source < count {
+            self.edges[source]
+        } else if source < 2 * count {
+            let from = self.edges[source - count].from;
+            Segment { from, to: from }
+        } else {
+            let to = self.edges[source - 2 * count].to;
+            Segment { from: to, to }
         }
     }
 
     /// What of a source passes straight through the side of a face: the whole if some of it lies inside of the
     /// side's line, an end if only that lies on it.
-    fn through(&self, source: u32, side: &Segment) -> Option<u32> {
-        let segment = self.segment(source);
+    fn through(&self, source: u32, segment: &Segment, side: &Segment) -> Option<u32> {
         let along = side.to - side.from;
         let inside = |p: DVec2| along.perp_dot(p - side.from);
         let (from, to) = (inside(segment.from), inside(segment.to));
@@ -52,13 +49,10 @@ impl Sources {
             return Some(source);
         }
         let count = self.edges.len() as u32;
-        let edge = source % count;
-        match source / count {
-            0 if from == 0.0 => Some(count + edge),
-            0 if to == 0.0 => Some(2 * count + edge),
-            1 | 2 if from == 0.0 => Some(source),
-            _ => None,
+        if source >= count {
+            return (from == 0.0).then_some(source);
         }
+        if from == 0.0 { Some(count + source) } else { (to == 0.0).then_some(2 * count + source) }
     }
 }
 
@@ -101,28 +95,74 @@ impl Queue {
     }
 }
 
+/// The corner after each of a triangle.
+const NEXT: [usize; 3] = [1, 2, 0];
+
+/// More than rounding does to a distance, relative to it.
+const SLACK: f64 = 1e-9;
+
 /// So many arrivals of sources are followed for each face, and [`FEW_ARRIVALS`] more.
 const ARRIVALS: usize = 256;
 
 /// See [`ARRIVALS`].
 const FEW_ARRIVALS: usize = 1 << 17;
 
+/// What is known of a face.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Reached {
+    /// No point of it is farther than this from the nearest open edge.
+    farthest: f64,
+    /// The same for each of its sides and the sources that reached it.
+    farthest_side: [f64; 3],
+    /// One more than the face beyond each side.
+    neighbours: [Option<NonZero<u32>>; 3],
+    /// One more than the place of the last source that reached it, in a list linked through [`Flooded::arrived`].
+    latest: Option<NonZero<u32>>,
+}
+
+/// For each face of a strip the sources that are near.
+pub(super) struct Flooded {
+    faces: Vec<Reached>,
+    /// Sources, and one more than the place of the one that reached the same face before.
+    arrived: Vec<(u32, Option<NonZero<u32>>)>,
+}
+
+impl Flooded {
+    pub(super) fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Whether all of a face is nearer than `distance` to one open edge.
+    pub(super) fn is_within(&self, face: usize, distance: f64) -> bool {
+        self.faces[face].farthest <= distance
+    }
+
+    /// The sources to which points of a face may be near. There are no others.
+    pub(super) fn sources(&self, face: usize) -> impl Iterator<Item = u32> {
+        let mut next = self.faces[face].latest;
+        std::iter::from_fn(move || {
+            let (source, before) = self.arrived[next?.get() as usize - 1];
+            next = before;
+            Some(source)
+        })
+    }
+}
+
 /// For each face of the strip the sources nearer than `d_m` to it. `open` holds, for each open edge, its place in
 /// the strip's border; cuts that are not among them are crossed.
 ///
 /// `None` if there are too many near too many faces, as on needles that lie side by side within d_m.
-pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) -> Option<Vec<Near>> {
+pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) -> Option<Flooded> {
     let sides = Sides::new(strip);
-    let neighbours = neighbours(strip, &sides, open);
-    let count = strip.corners.len();
-    // For each face the sources that reached it so far, as a list linked through `arrived`.
-    let mut latest: Vec<Option<u32>> = vec![None; count];
-    let mut arrived: Vec<(u32, Option<u32>)> = Vec::new();
-    // No point of the face is farther than this from the nearest open edge.
-    let mut farthest = vec![f64::INFINITY; count];
-    // The same for each side of each face and the sources that reached that face.
-    let mut farthest_side = vec![[f64::INFINITY; 3]; count];
-    let most = FEW_ARRIVALS + ARRIVALS * count;
+    let reached = |neighbours| Reached {
+        farthest: f64::INFINITY,
+        farthest_side: [f64::INFINITY; 3],
+        neighbours,
+        latest: None,
+    };
+    let faces: Vec<Reached> = neighbours(strip, &sides, open).into_iter().map(reached).collect();
+    let most = FEW_ARRIVALS + ARRIVALS * faces.len();
     let mut queue = Queue::new(d_m.min(strip.extent.length()));
     for (&place, source) in open.iter().zip(0u32..) {
         let edge = &strip.border[place];
@@ -130,55 +170,48 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
             queue.push(Arrival { distance: 0.0, face: side / 3, source });
         }
     }
-    let linked = |from: Option<u32>, arrived: &[(u32, Option<u32>)]| {
-        let mut all = Vec::new();
-        let mut next = from;
-        while let Some(i) = next {
-            let (source, before) = arrived[i as usize];
-            all.push(source);
-            next = before;
-        }
-        all
-    };
+    drop(sides);
+    let mut flooded = Flooded { faces, arrived: Vec::new() };
     while let Some(Arrival { distance, face, source }) = queue.pop() {
         let f = face as usize;
-        if distance >= farthest[f] {
+        if distance >= flooded.faces[f].farthest || flooded.sources(f).any(|known| known == source) {
             continue;
         }
-        let mut known = latest[f];
-        while let Some(i) = known.filter(|&i| arrived[i as usize].0 != source) {
-            known = arrived[i as usize].1;
-        }
-        if known.is_some() {
-            continue;
-        }
-        if arrived.len() >= most {
+        if flooded.arrived.len() >= most {
             return None;
         }
-        let place = u32::try_from(arrived.len()).ok()?;
-        arrived.push((source, latest[f]));
-        latest[f] = Some(place);
+        flooded.arrived.push((source, flooded.faces[f].latest));
         let segment = sources.segment(source);
         let corners = strip.triangle(f);
         let distances = corners.map(|p| segment.distance(p));
-        farthest[f] = farthest[f].min(distances[0].max(distances[1]).max(distances[2]));
+        let reached = &mut flooded.faces[f];
+        reached.latest = NonZero::new(u32::try_from(flooded.arrived.len()).ok()?);
+        reached.farthest = reached.farthest.min(distances[0].max(distances[1]).max(distances[2]));
+        // What is behind a side, all of which is nearer to another source, is nearer to that one as well.
+        let known = reached.farthest_side;
         for c in 0..3 {
-            let far = &mut farthest_side[f][c];
-            let known = *far;
-            *far = known.min(distances[c].max(distances[(c + 1) % 3]));
-            let Some(neighbour) = neighbours[f][c] else { continue };
-            let side = Segment { from: corners[c], to: corners[(c + 1) % 3] };
-            let Some(source) = sources.through(source, &side) else { continue };
-            let ends = distances[c].min(distances[(c + 1) % 3]);
+            let far = distances[c].max(distances[NEXT[c]]);
+            reached.farthest_side[c] = known[c].min(far);
+        }
+        let neighbours = reached.neighbours;
+        for c in 0..3 {
+            let Some(neighbour) = neighbours[c].map(|number| number.get() - 1) else { continue };
+            let nearest = d_m.min(known[c]).min(flooded.faces[neighbour as usize].farthest);
+            let side = Segment { from: corners[c], to: corners[NEXT[c]] };
+            // The two distances differ along the side by no more than its length; most sides are too far by this alone.
+            let least = 0.5 * (distances[c] + distances[NEXT[c]] - side.from.distance(side.to));
+            if least * (1.0 - SLACK) >= nearest {
+                continue;
+            }
+            let Some(source) = sources.through(source, &segment, &side) else { continue };
+            let ends = distances[c].min(distances[NEXT[c]]);
             let distance = ends.min(side.distance(segment.from)).min(side.distance(segment.to));
-            // What is behind a side, all of which is nearer to another source, is nearer to that one as well.
-            if distance < d_m && distance < known && distance < farthest[neighbour as usize] {
+            if distance < nearest {
                 queue.push(Arrival { distance, face: neighbour, source });
             }
         }
     }
-    let near = |f| if farthest[f] <= d_m { Near::Whole } else { Near::Sources(linked(latest[f], &arrived)) };
-    Some((0..count).map(near).collect())
+    Some(flooded)
 }
 
 /// The sides of a strip's faces by the planar vertices at their ends.
@@ -217,13 +250,12 @@ impl Sides {
     }
 }
 
-/// The face beyond each side of each face, closed cuts crossed.
-fn neighbours(strip: &Strip, sides: &Sides, open: &[usize]) -> Vec<[Option<u32>; 3]> {
-    let mut neighbours: Vec<[Option<u32>; 3]> = strip
-        .corners
-        .iter()
-        .map(|&[a, b, c]| [(b, a), (c, b), (a, c)].map(|(from, to)| Some(sides.find(from, to)? / 3)))
-        .collect();
+/// One more than the face beyond each side of each face, closed cuts crossed.
+fn neighbours(strip: &Strip, sides: &Sides, open: &[usize]) -> Vec<[Option<NonZero<u32>>; 3]> {
+    let mut neighbours = parallel::map(strip.corners.len(), |face| {
+        let [a, b, c] = strip.corners[face];
+        [(b, a), (c, b), (a, c)].map(|(from, to)| NonZero::new(sides.find(from, to)? / 3 + 1))
+    });
     let mut is_open = vec![false; strip.border.len()];
     for &place in open {
         is_open[place] = true;
@@ -231,7 +263,7 @@ fn neighbours(strip: &Strip, sides: &Sides, open: &[usize]) -> Vec<[Option<u32>;
     for (edge, _) in strip.border.iter().zip(is_open).filter(|(_, open)| !open) {
         let Twin::SameStrip { from, to } = edge.twin else { continue };
         if let (Some(side), Some(beyond)) = (sides.find(edge.from, edge.to), sides.find(to, from)) {
-            neighbours[side as usize / 3][side as usize % 3] = Some(beyond / 3);
+            neighbours[side as usize / 3][side as usize % 3] = NonZero::new(beyond / 3 + 1);
         }
     }
     neighbours
