@@ -27,8 +27,17 @@ enum Nearest {
 }
 
 impl Segment {
+    #[inline]
     pub(super) fn distance(&self, p: DVec2) -> f64 {
         segment_distance(self.from, self.to, p)
+    }
+
+    /// Whether the point of the segment that is nearest to `p` lies between its ends.
+    #[inline]
+    pub(super) fn lies_beside(&self, p: DVec2) -> bool {
+        let along = self.to - self.from;
+        let place = (p - self.from).dot(along);
+        place > 0.0 && place < along.length_squared()
     }
 
     /// Whether it is one point, and that an end of a segment with a length: never nearer than that one.
@@ -39,14 +48,17 @@ impl Segment {
     fn nearest(&self, triangle: &[DVec2; 3]) -> Nearest {
         let along = self.to - self.from;
         let squared = along.length_squared();
-        let places = triangle.map(|p| (p - self.from).dot(along));
+        let [a, b, c] = *triangle;
+        let place = |p: DVec2| (p - self.from).dot(along);
+        let places = [place(a), place(b), place(c)];
         if places.iter().all(|&t| t <= 0.0) {
             return Nearest::From;
         }
         if places.iter().all(|&t| t >= squared) {
             return Nearest::To;
         }
-        let sides = triangle.map(|p| along.perp_dot(p - self.from));
+        let side = |p: DVec2| along.perp_dot(p - self.from);
+        let sides = [side(a), side(b), side(c)];
         let one_side = sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0);
         if one_side && places.iter().all(|&t| (0.0..=squared).contains(&t)) {
             return Nearest::Inside;

@@ -73,7 +73,8 @@ impl Pieces {
             if edge.distance(centre) >= d_m + radius {
                 continue;
             }
-            let far = corners.map(|p| edge.distance(p));
+            let [a, b, c] = *corners;
+            let far = [edge.distance(a), edge.distance(b), edge.distance(c)];
             // The points near an edge form a convex set: if it holds the corners it holds the triangle.
             if far.iter().all(|&far| far <= d_m) {
                 return Some(area(corners));

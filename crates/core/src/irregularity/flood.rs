@@ -65,8 +65,7 @@ struct Arrival {
     source: u32,
 }
 
-/// Gives the nearest arrivals first, up to the width of a bucket: their order decides about the work only, and
-/// exact order would cost more than it saves.
+/// Gives the nearest arrivals first, up to the width of a bucket: exact order would cost more than it saves.
 struct Queue {
     buckets: Vec<Vec<Arrival>>,
     first: usize,
@@ -95,9 +94,6 @@ impl Queue {
     }
 }
 
-/// The corner after each of a triangle.
-const NEXT: [usize; 3] = [1, 2, 0];
-
 /// More than rounding does to a distance, relative to it.
 const SLACK: f64 = 1e-9;
 
@@ -107,25 +103,30 @@ const ARRIVALS: usize = 256;
 /// See [`ARRIVALS`].
 const FEW_ARRIVALS: usize = 1 << 17;
 
-/// What is known of a face.
+/// So many sources are kept with their face.
+const KEPT: usize = 6;
+
+/// What is known of a face, in one line of the cache. Numbers of faces, sources and places are one more than they are.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Reached {
-    /// No point of it is farther than this from the nearest open edge.
-    farthest: f64,
-    /// The same for each of its sides and the sources that reached it.
-    farthest_side: [f64; 3],
-    /// One more than the face beyond each side.
+    /// For each side: no point of it is farther than this from the nearest of the sources that reached the face.
+    farthest: [f64; 3],
+    /// The face beyond each side.
     neighbours: [Option<NonZero<u32>>; 3],
-    /// One more than the place of the last source that reached it, in a list linked through [`Flooded::arrived`].
-    latest: Option<NonZero<u32>>,
+    /// The sources that reached it first.
+    first: [Option<NonZero<u32>>; KEPT],
+    /// The place of the last of all others, in a list linked through [`Flooded::others`].
+    last: Option<NonZero<u32>>,
 }
 
 /// For each face of a strip the sources that are near.
 pub(super) struct Flooded {
     faces: Vec<Reached>,
-    /// Sources, and one more than the place of the one that reached the same face before.
-    arrived: Vec<(u32, Option<NonZero<u32>>)>,
+    /// No point of each face is farther than this from the nearest open edge.
+    farthest: Vec<f64>,
+    /// Sources, and the place of the one that reached the same face before.
+    others: Vec<(u32, Option<NonZero<u32>>)>,
 }
 
 impl Flooded {
@@ -135,17 +136,46 @@ impl Flooded {
 
     /// Whether all of a face is nearer than `distance` to one open edge.
     pub(super) fn is_within(&self, face: usize, distance: f64) -> bool {
-        self.faces[face].farthest <= distance
+        self.farthest[face] <= distance
     }
 
     /// The sources to which points of a face may be near. There are no others.
     pub(super) fn sources(&self, face: usize) -> impl Iterator<Item = u32> {
-        let mut next = self.faces[face].latest;
-        std::iter::from_fn(move || {
-            let (source, before) = self.arrived[next?.get() as usize - 1];
+        let reached = &self.faces[face];
+        let mut next = reached.last;
+        let others = std::iter::from_fn(move || {
+            let (source, before) = self.others[next?.get() as usize - 1];
             next = before;
             Some(source)
-        })
+        });
+        others.chain(reached.first.iter().rev().flatten().map(|number| number.get() - 1))
+    }
+
+    /// Adds a source to those of a face, if it is not among them.
+    #[inline]
+    fn add(&mut self, face: usize, source: u32) -> bool {
+        let number = NonZero::new(source + 1);
+        let reached = &mut self.faces[face];
+        for kept in &mut reached.first {
+            if kept.is_none() {
+                *kept = number;
+                return true;
+            }
+            if *kept == number {
+                return false;
+            }
+        }
+        let mut next = reached.last;
+        while let Some(place) = next {
+            let (other, before) = self.others[place.get() as usize - 1];
+            if other == source {
+                return false;
+            }
+            next = before;
+        }
+        self.others.push((source, reached.last));
+        reached.last = NonZero::new(self.others.len() as u32);
+        true
     }
 }
 
@@ -155,14 +185,10 @@ impl Flooded {
 /// `None` if there are too many near too many faces, as on needles that lie side by side within d_m.
 pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) -> Option<Flooded> {
     let sides = Sides::new(strip);
-    let reached = |neighbours| Reached {
-        farthest: f64::INFINITY,
-        farthest_side: [f64::INFINITY; 3],
-        neighbours,
-        latest: None,
-    };
+    let reached =
+        |neighbours| Reached { farthest: [f64::INFINITY; 3], neighbours, first: [None; KEPT], last: None };
     let faces: Vec<Reached> = neighbours(strip, &sides, open).into_iter().map(reached).collect();
-    let most = FEW_ARRIVALS + ARRIVALS * faces.len();
+    let most = (FEW_ARRIVALS + ARRIVALS * faces.len()).min(u32::MAX as usize);
     let mut queue = Queue::new(d_m.min(strip.extent.length()));
     for (&place, source) in open.iter().zip(0u32..) {
         let edge = &strip.border[place];
@@ -171,41 +197,44 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
         }
     }
     drop(sides);
-    let mut flooded = Flooded { faces, arrived: Vec::new() };
+    let farthest = vec![f64::INFINITY; faces.len()];
+    let mut flooded = Flooded { faces, farthest, others: Vec::new() };
+    let mut arrived = 0;
     while let Some(Arrival { distance, face, source }) = queue.pop() {
         let f = face as usize;
-        if distance >= flooded.faces[f].farthest || flooded.sources(f).any(|known| known == source) {
+        if distance >= flooded.farthest[f] || !flooded.add(f, source) {
             continue;
         }
-        if flooded.arrived.len() >= most {
+        arrived += 1;
+        if arrived > most {
             return None;
         }
-        flooded.arrived.push((source, flooded.faces[f].latest));
         let segment = sources.segment(source);
-        let corners = strip.triangle(f);
-        let distances = corners.map(|p| segment.distance(p));
-        let reached = &mut flooded.faces[f];
-        reached.latest = NonZero::new(u32::try_from(flooded.arrived.len()).ok()?);
-        reached.farthest = reached.farthest.min(distances[0].max(distances[1]).max(distances[2]));
-        // What is behind a side, all of which is nearer to another source, is nearer to that one as well.
-        let known = reached.farthest_side;
-        for c in 0..3 {
-            let far = distances[c].max(distances[NEXT[c]]);
-            reached.farthest_side[c] = known[c].min(far);
-        }
-        let neighbours = reached.neighbours;
-        for c in 0..3 {
-            let Some(neighbour) = neighbours[c].map(|number| number.get() - 1) else { continue };
-            let nearest = d_m.min(known[c]).min(flooded.faces[neighbour as usize].farthest);
-            let side = Segment { from: corners[c], to: corners[NEXT[c]] };
-            // The two distances differ along the side by no more than its length; most sides are too far by this alone.
-            let least = 0.5 * (distances[c] + distances[NEXT[c]] - side.from.distance(side.to));
+        let [a, b, c] = strip.triangle(f);
+        let (to_a, to_b, to_c) = (segment.distance(a), segment.distance(b), segment.distance(c));
+        flooded.farthest[f] = flooded.farthest[f].min(to_a.max(to_b).max(to_c));
+        let Reached { farthest, neighbours, .. } = &mut flooded.faces[f];
+        let sides = [(a, b, to_a, to_b), (b, c, to_b, to_c), (c, a, to_c, to_a)];
+        for ((known, neighbour), (from, to, far, other)) in farthest.iter_mut().zip(neighbours).zip(sides) {
+            // What is behind a side, all of which is nearer to another source, is nearer to that one as well.
+            let nearest = d_m.min(*known);
+            *known = known.min(far.max(other));
+            let Some(neighbour) = neighbour.map(|number| number.get() - 1) else { continue };
+            let nearest = nearest.min(flooded.farthest[neighbour as usize]);
+            let side = Segment { from, to };
+            let Some(source) = sources.through(source, &segment, &side) else { continue };
+            // The distances at both ends differ by no more than the length of the side: many are too far by this alone.
+            let least = 0.5 * (far + other - from.distance(to));
             if least * (1.0 - SLACK) >= nearest {
                 continue;
             }
-            let Some(source) = sources.through(source, &segment, &side) else { continue };
-            let ends = distances[c].min(distances[NEXT[c]]);
-            let distance = ends.min(side.distance(segment.from)).min(side.distance(segment.to));
+            let mut distance = far.min(other);
+            // An end of the source is nearer to the inside of the side than to its ends, or those are the nearest.
+            for end in [segment.from, segment.to] {
+                if side.lies_beside(end) {
+                    distance = distance.min(side.distance(end));
+                }
+            }
             if distance < nearest {
                 queue.push(Arrival { distance, face: neighbour, source });
             }

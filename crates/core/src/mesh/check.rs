@@ -191,7 +191,10 @@ impl Faces {
             return None;
         }
         let vertex = |corner: u32| first.map_or(VertexId(corner), |first| first[corner as usize]);
-        let corners = parallel::map(polygons.len(), |polygon| polygons[polygon].map(vertex));
+        let corners = parallel::map(polygons.len(), |polygon| {
+            let [a, b, c] = polygons[polygon];
+            [vertex(a), vertex(b), vertex(c)]
+        });
         if corners.iter().any(|&[a, b, c]| a == b || b == c || c == a) {
             return None;
         }
@@ -357,7 +360,8 @@ impl Faces {
 /// The areas and unit normals of triangles; both 0 where there is no area beyond rounding.
 fn measure(corners: &[[VertexId; 3]], positions: &[DVec3]) -> (Vec<f64>, Vec<DVec3>) {
     parallel::map_pairs(corners.len(), |face| {
-        let [a, b, c] = corners[face].map(|v| positions[v.index()]);
+        let [a, b, c] = corners[face];
+        let [a, b, c] = [positions[a.index()], positions[b.index()], positions[c.index()]];
         if !has_area(a, b, c) {
             return (0.0, DVec3::ZERO);
         }

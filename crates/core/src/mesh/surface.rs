@@ -36,7 +36,8 @@ impl SurfaceMesh {
     /// areas positive.
     pub(crate) fn assemble(positions: Vec<DVec3>, topology: Topology, sources: Vec<FaceSource>) -> Self {
         let (areas, normals) = parallel::map_pairs(topology.face_count(), |face| {
-            let [a, b, c] = topology.faces()[face].map(|v| positions[v.index()]);
+            let [a, b, c] = topology.faces()[face];
+            let [a, b, c] = [positions[a.index()], positions[b.index()], positions[c.index()]];
             let vector = triangle::area_vector(a, b, c);
             let length = vector.length();
             (0.5 * length, vector / length)
@@ -113,7 +114,9 @@ impl SurfaceMesh {
     /// The positions of a face's corners.
     #[inline]
     pub fn triangle(&self, face: FaceId) -> [DVec3; 3] {
-        self.topology.corners(face).map(|v| self.positions[v.index()])
+        // `map` of an array is not made one with what is around it.
+        let [a, b, c] = self.topology.corners(face);
+        [self.position(a), self.position(b), self.position(c)]
     }
 
     /// The length of an edge.

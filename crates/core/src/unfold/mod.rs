@@ -109,7 +109,9 @@ impl Strip {
     /// The corners of its `index`-th face in the plane.
     #[inline]
     pub fn triangle(&self, index: usize) -> [DVec2; 3] {
-        self.corners[index].map(|v| self.vertices[v as usize])
+        // `map` of an array is not made one with what is around it.
+        let [a, b, c] = self.corners[index];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 }
 
