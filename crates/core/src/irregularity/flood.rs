@@ -106,6 +106,14 @@ const FEW_ARRIVALS: usize = 1 << 17;
 /// So many sources are kept with their face.
 const KEPT: usize = 6;
 
+/// Sources that reached a face later; numbers as in [`Reached`].
+#[derive(Clone, Copy)]
+struct More {
+    sources: [Option<NonZero<u32>>; 7],
+    /// The place of those before them.
+    before: Option<NonZero<u32>>,
+}
+
 /// What is known of a face, in one line of the cache. Numbers of faces, sources and places are one more than they are.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
@@ -116,7 +124,7 @@ struct Reached {
     neighbours: [Option<NonZero<u32>>; 3],
     /// The sources that reached it first.
     first: [Option<NonZero<u32>>; KEPT],
-    /// The place of the last of all others, in a list linked through [`Flooded::others`].
+    /// The place of the last of all others, in a list linked through [`Flooded::more`].
     last: Option<NonZero<u32>>,
 }
 
@@ -125,8 +133,7 @@ pub(super) struct Flooded {
     faces: Vec<Reached>,
     /// No point of each face is farther than this from the nearest open edge.
     farthest: Vec<f64>,
-    /// Sources, and the place of the one that reached the same face before.
-    others: Vec<(u32, Option<NonZero<u32>>)>,
+    more: Vec<More>,
 }
 
 impl Flooded {
@@ -142,13 +149,10 @@ impl Flooded {
     /// The sources to which points of a face may be near. There are no others.
     pub(super) fn sources(&self, face: usize) -> impl Iterator<Item = u32> {
         let reached = &self.faces[face];
-        let mut next = reached.last;
-        let others = std::iter::from_fn(move || {
-            let (source, before) = self.others[next?.get() as usize - 1];
-            next = before;
-            Some(source)
-        });
-        others.chain(reached.first.iter().rev().flatten().map(|number| number.get() - 1))
+        let place = |number: NonZero<u32>| &self.more[number.get() as usize - 1];
+        let more = std::iter::successors(reached.last.map(place), move |more| more.before.map(place));
+        let later = more.flat_map(|more| more.sources.iter().rev());
+        later.chain(reached.first.iter().rev()).flatten().map(|number| number.get() - 1)
     }
 
     /// Adds a source to those of a face, if it is not among them.
@@ -156,6 +160,7 @@ impl Flooded {
     fn add(&mut self, face: usize, source: u32) -> bool {
         let number = NonZero::new(source + 1);
         let reached = &mut self.faces[face];
+        // Free places come last.
         for kept in &mut reached.first {
             if kept.is_none() {
                 *kept = number;
@@ -167,14 +172,21 @@ impl Flooded {
         }
         let mut next = reached.last;
         while let Some(place) = next {
-            let (other, before) = self.others[place.get() as usize - 1];
-            if other == source {
+            let more = &self.more[place.get() as usize - 1];
+            if more.sources.contains(&number) {
                 return false;
             }
-            next = before;
+            next = more.before;
         }
-        self.others.push((source, reached.last));
-        reached.last = NonZero::new(self.others.len() as u32);
+        let last = reached.last.map(|place| &mut self.more[place.get() as usize - 1]);
+        if let Some(free) = last.and_then(|last| last.sources.iter_mut().find(|source| source.is_none())) {
+            *free = number;
+            return true;
+        }
+        let mut more = More { sources: [None; 7], before: reached.last };
+        more.sources[0] = number;
+        self.more.push(more);
+        reached.last = NonZero::new(self.more.len() as u32);
         true
     }
 }
@@ -198,7 +210,7 @@ pub(super) fn flood(strip: &Strip, open: &[usize], sources: &Sources, d_m: f64) 
     }
     drop(sides);
     let farthest = vec![f64::INFINITY; faces.len()];
-    let mut flooded = Flooded { faces, farthest, others: Vec::new() };
+    let mut flooded = Flooded { faces, farthest, more: Vec::new() };
     let mut arrived = 0;
     while let Some(Arrival { distance, face, source }) = queue.pop() {
         let f = face as usize;

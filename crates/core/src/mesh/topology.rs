@@ -268,3 +268,66 @@ impl Components {
         Self { of_face, count: count as usize }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Triangles among few vertices, which share edges and corners as they like.
+    fn triangles(most: usize) -> impl Strategy<Value = Vec<[VertexId; 3]>> {
+        let triangle = (0..9_u32, 1..9_u32, 1..8_u32).prop_map(|(a, b, c)| {
+            let c = if c < b { c } else { c + 1 };
+            [a, (a + b) % 9, (a + c) % 9].map(VertexId)
+        });
+        prop::collection::vec(triangle, 1..most)
+    }
+
+    fn has_repeated(faces: &[[VertexId; 3]]) -> bool {
+        let sorted = |mut face: [VertexId; 3]| {
+            face.sort_unstable();
+            face
+        };
+        (1..faces.len()).any(|i| faces[..i].iter().any(|&other| sorted(other) == sorted(faces[i])))
+    }
+
+    proptest! {
+        /// The short way gives what the long one gives, and tells where it cannot.
+        #[test]
+        fn clean_twins_are_the_twins(faces in triangles(8)) {
+            let (topology, split) = Topology::new(9, faces.clone());
+            let is_clean = split.non_manifold == 0 && split.inconsistent == 0 && !has_repeated(&faces);
+            let expected = is_clean.then_some(topology.twins);
+            prop_assert_eq!(Topology::clean_twins(9, &faces), expected);
+        }
+
+        /// Faces are of one component if a way across edges leads from one to the other; components come by their first face.
+        #[test]
+        fn components_are_what_edges_join(faces in triangles(14)) {
+            let (topology, _) = Topology::new(9, faces);
+            let mut of_face: Vec<usize> = (0..topology.face_count()).collect();
+            for _ in 0..topology.face_count() {
+                for (h, &twin) in topology.twins.iter().enumerate().filter(|(_, twin)| **twin != BORDER) {
+                    of_face[h / 3] = of_face[h / 3].min(of_face[twin as usize / 3]);
+                }
+            }
+            let mut firsts = of_face.clone();
+            firsts.sort_unstable();
+            firsts.dedup();
+            let expected: Vec<u32> = of_face.iter().map(|first| firsts.binary_search(first).unwrap() as u32).collect();
+            prop_assert_eq!(topology.components().count, firsts.len());
+            prop_assert_eq!(&topology.components().of_face, &expected);
+        }
+    }
+
+    /// Around a vertex with so many triangles that halving is the way to find one.
+    #[test]
+    fn a_fan_is_clean_until_one_triangle_is_there_twice() {
+        let spoke = |i: u32| VertexId(1 + i % 50);
+        let mut faces: Vec<_> = (0..50).map(|i| [VertexId(0), spoke(i), spoke(i + 1)]).collect();
+        assert_eq!(Topology::clean_twins(51, &faces), Some(Topology::new(51, faces.clone()).0.twins));
+        faces.push([spoke(31), VertexId(0), spoke(30)]);
+        assert_eq!(Topology::clean_twins(51, &faces), None);
+    }
+}
