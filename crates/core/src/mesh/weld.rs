@@ -35,7 +35,7 @@ pub(super) fn repeated(positions: &[DVec3]) -> Vec<(VertexId, VertexId)> {
         let mut repeated = Vec::new();
         // Of each position the first vertex comes first.
         for &(hash, v) in buckets.bucket(bucket) {
-            let mut slot = (u64::from(hash << bits) * slots as u64 >> 32) as usize;
+            let mut slot = ((u64::from(hash << bits) * slots as u64) >> 32) as usize;
             loop {
                 match &mut table[slot] {
                     (other_hash, Some(number)) => {

@@ -59,9 +59,8 @@ impl Loops {
                 vertex += 1;
             } else {
                 let start = steps.len();
-                for corner in 0..3 {
-                    let length = starts[i][corner] as usize;
-                    starts[i][corner] = steps.len() as u32;
+                for (corner, place) in starts[i].iter_mut().enumerate() {
+                    let length = std::mem::replace(place, steps.len() as u32) as usize;
                     steps.resize(steps.len() + length, Step { side: side(corner), from: vertex });
                     vertex += 1;
                 }
