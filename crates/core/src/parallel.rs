@@ -27,6 +27,24 @@ pub(crate) fn extend<T: Send>(items: &mut Vec<T>, count: usize, f: impl Fn(usize
     items.extend((0..count).map(f));
 }
 
+/// As [`map`], of an `f` that gives two, apart.
+pub(crate) fn map_pairs<A: Send, B: Send>(
+    count: usize,
+    f: impl Fn(usize) -> (A, B) + Sync + Send,
+) -> (Vec<A>, Vec<B>) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        let mut pairs = (Vec::new(), Vec::new());
+        (0..count).into_par_iter().map(f).unzip_into_vecs(&mut pairs.0, &mut pairs.1);
+        pairs
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        (0..count).map(f).unzip()
+    }
+}
+
 /// The results of two, side by side.
 pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     #[cfg(feature = "parallel")]

@@ -10,6 +10,18 @@ impl Sets {
         Self((0..count as u32).collect())
     }
 
+    /// How many numbers there are.
+    pub(crate) fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// One more number, alone.
+    pub(crate) fn add(&mut self) -> u32 {
+        let member = self.0.len() as u32;
+        self.0.push(member);
+        member
+    }
+
     /// The smallest member of the set that holds `member`.
     pub(crate) fn root(&mut self, mut member: u32) -> u32 {
         while !self.is_root(member) {

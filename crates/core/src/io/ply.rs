@@ -1,7 +1,9 @@
-//! Reads PLY files in all three encodings: headers and binary data with `ply-rs-bw`, text in `ascii`.
+//! Reads PLY files in all three encodings: headers and binary data with `ply-rs-bw`, but for the commonest in `plain`, text in
+//! `ascii`.
 
 mod ascii;
 mod attributes;
+mod plain;
 
 use std::io::ErrorKind;
 
@@ -68,6 +70,12 @@ pub(super) fn read_within(
                     soup.positions = attributes::positions(element, &vertices);
                     continue;
                 }
+                if let Some(positions) =
+                    data.plain(|bytes, encoding| plain::positions(bytes, element, encoding))
+                {
+                    soup.positions.extend(positions);
+                    continue;
+                }
                 soup.positions.reserve(data.likely(element));
                 data.in_blocks(element, |vertices: Vec<Vertex>| {
                     soup.positions.extend(vertices.into_iter().map(|v| v.0));
@@ -83,6 +91,16 @@ pub(super) fn read_within(
                 }
                 soup.ends.reserve(data.likely(element));
                 soup.corners.reserve(3 * data.likely(element));
+                let added = data.plain(|bytes, encoding| {
+                    match plain::add_polygons(&mut soup, bytes, element, encoding, limits)? {
+                        Ok(length) => Some((Ok(()), length)),
+                        Err(error) => Some((Err(error), 0)),
+                    }
+                });
+                if let Some(added) = added {
+                    added?;
+                    continue;
+                }
                 let mut first = 0;
                 data.in_blocks(element, |faces: Vec<Corners>| {
                     add_faces(&mut soup, first, faces.iter().map(|face| &face.0[..]), limits)?;
@@ -132,6 +150,15 @@ impl Data<'_> {
                 Parser::<E>::new().read_payload_for_element(reader, element, header).map_err(|e| explain(&e))
             }
         }
+    }
+
+    /// What `read` makes of binary data, which says how many bytes it took; `None` if nothing.
+    fn plain<T>(&mut self, read: impl FnOnce(&[u8], Encoding) -> Option<(T, usize)>) -> Option<T> {
+        let Self::Binary(reader, header) = self else { return None };
+        let (made, length) = read(reader.get_ref(), header.encoding)?;
+        let bytes = reader.get_mut();
+        *bytes = &bytes[length..];
+        Some(made)
     }
 
     /// How many of the elements are sure to be there if each is three singles, or three corners.
@@ -202,21 +229,25 @@ fn read_header(bytes: &[u8]) -> Result<(Header, usize), ReadError> {
     Ok((header, line_break + 1))
 }
 
-/// Refuses counts for which there are not enough bytes: each number takes at least two in text, its size in binary.
-fn check_count(element: &ElementDef, header: &Header, remaining: usize) -> Result<(), ReadError> {
-    let size = |scalar: &ScalarType| match scalar {
+/// How many bytes a number takes.
+fn scalar_size(scalar: &ScalarType) -> usize {
+    match scalar {
         ScalarType::Char | ScalarType::UChar => 1,
         ScalarType::Short | ScalarType::UShort => 2,
         ScalarType::Int | ScalarType::UInt | ScalarType::Float => 4,
         ScalarType::Double => 8,
-    };
+    }
+}
+
+/// Refuses counts for which there are not enough bytes: each number takes at least two in text, its size in binary.
+fn check_count(element: &ElementDef, header: &Header, remaining: usize) -> Result<(), ReadError> {
     let smallest: usize = match header.encoding {
         Encoding::Ascii => 2 * element.properties.len(),
         _ => element
             .properties
             .values()
             .map(|p| match &p.data_type {
-                PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => size(scalar),
+                PropertyType::Scalar(scalar) | PropertyType::List(scalar, _) => scalar_size(scalar),
             })
             .sum(),
     };

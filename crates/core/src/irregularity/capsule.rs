@@ -27,8 +27,17 @@ enum Nearest {
 }
 
 impl Segment {
+    #[inline]
     pub(super) fn distance(&self, p: DVec2) -> f64 {
         segment_distance(self.from, self.to, p)
+    }
+
+    /// Whether the point of the segment that is nearest to `p` lies between its ends.
+    #[inline]
+    pub(super) fn lies_beside(&self, p: DVec2) -> bool {
+        let along = self.to - self.from;
+        let place = (p - self.from).dot(along);
+        place > 0.0 && place < along.length_squared()
     }
 
     /// Whether it is one point, and that an end of a segment with a length: never nearer than that one.
@@ -39,14 +48,17 @@ impl Segment {
     fn nearest(&self, triangle: &[DVec2; 3]) -> Nearest {
         let along = self.to - self.from;
         let squared = along.length_squared();
-        let places = triangle.map(|p| (p - self.from).dot(along));
+        let [a, b, c] = *triangle;
+        let place = |p: DVec2| (p - self.from).dot(along);
+        let places = [place(a), place(b), place(c)];
         if places.iter().all(|&t| t <= 0.0) {
             return Nearest::From;
         }
         if places.iter().all(|&t| t >= squared) {
             return Nearest::To;
         }
-        let sides = triangle.map(|p| along.perp_dot(p - self.from));
+        let side = |p: DVec2| along.perp_dot(p - self.from);
+        let sides = [side(a), side(b), side(c)];
         let one_side = sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0);
         if one_side && places.iter().all(|&t| (0.0..=squared).contains(&t)) {
             return Nearest::Inside;
@@ -55,32 +67,44 @@ impl Segment {
     }
 }
 
+/// The most segments that are held against each other.
+pub(super) const FEW: usize = 16;
+
 /// Drops every segment that another one is at least as near as everywhere in the triangle (up to `slack`), so far
 /// as that can be told from its corners: the difference of two distances that are both linear, or of the squares
-/// of two distances to points, is linear over the triangle. Ends of other segments are dropped too.
-pub(super) fn drop_dominated(segments: &mut Vec<Segment>, triangle: &[DVec2; 3], slack: f64) {
-    let seen: Vec<_> = segments
-        .iter()
-        .map(|s| {
-            let kind = match s.nearest(triangle) {
-                Nearest::From | Nearest::To => Some(true),
-                Nearest::Inside => Some(false),
-                Nearest::Mixed => None,
-            };
-            (kind, triangle.map(|p| s.distance(p)))
-        })
-        .collect();
-    let mut kept = vec![true; segments.len()];
+/// of two distances to points, is linear over the triangle. Ends of other segments are dropped too. `far` holds the
+/// distances of the first [`FEW`] segments from the corners; more are not looked at. Gives how many are kept, which
+/// are moved to the front.
+pub(super) fn drop_dominated(
+    segments: &mut [Segment],
+    far: &[[f64; 3]; FEW],
+    triangle: &[DVec2; 3],
+    slack: f64,
+) -> usize {
+    let mut kinds = [None; FEW];
+    for (kind, segment) in kinds.iter_mut().zip(&*segments) {
+        *kind = match segment.nearest(triangle) {
+            Nearest::From | Nearest::To => Some(true),
+            Nearest::Inside => Some(false),
+            Nearest::Mixed => None,
+        };
+    }
+    let mut kept = [true; FEW];
     for i in (0..segments.len()).rev() {
-        let (Some(kind), far) = seen[i] else { continue };
+        let Some(kind) = kinds[i] else { continue };
         kept[i] = !(0..segments.len()).any(|j| {
-            let (other, near) = seen[j];
-            let nearer = other == Some(kind) && (0..3).all(|c| near[c] <= far[c] + slack);
+            let nearer = kinds[j] == Some(kind) && (0..3).all(|c| far[j][c] <= far[i][c] + slack);
             j != i && kept[j] && (nearer || segments[i].is_end_of(&segments[j]))
         });
     }
-    let mut kept = kept.into_iter();
-    segments.retain(|_| kept.next() == Some(true));
+    let mut count = 0;
+    for i in 0..segments.len() {
+        if kept[i] {
+            segments[count] = segments[i];
+            count += 1;
+        }
+    }
+    count
 }
 
 /// The area of the part of a counterclockwise triangle that lies within `radius` of a segment.

@@ -8,8 +8,8 @@
 
 use glam::DVec2;
 
-use super::capsule::{Segment, covered_area, covered_area_of_pair, drop_dominated};
-use super::flood::{Near, Sources, flood};
+use super::capsule::{FEW, Segment, covered_area, covered_area_of_pair, drop_dominated};
+use super::flood::{Sources, flood};
 use super::open::OpenEdge;
 use super::total_area;
 use crate::parallel::{map, map_chunks};
@@ -24,22 +24,79 @@ const DEEPEST: usize = 20;
 /// How many faces are judged together.
 const CHUNK: usize = 1 << 12;
 
-/// Comparing every segment with every other pays only when few are left.
-const FEW: usize = 16;
-
-/// A triangle whose part in the zone is not known yet.
-struct Piece {
-    corners: [DVec2; 3],
-    /// Open edges, and ends of such, to which at least one point of the triangle may be nearer than d_m.
+/// Triangles whose part in the zone is not known yet.
+#[derive(Default)]
+struct Pieces {
+    /// Each with where in `edges` those start to which at least one of its points may be nearer than d_m: open edges,
+    /// and ends of such.
+    corners: Vec<([DVec2; 3], u32)>,
     edges: Vec<Segment>,
 }
 
-/// What is known of a triangle.
-enum Verdict {
-    /// The area of its part in the zone.
-    Covered(f64),
-    /// Has to be cut.
-    Undecided(Piece),
+impl Pieces {
+    /// Each piece with its edges.
+    fn iter(&self) -> impl Iterator<Item = (&[DVec2; 3], &[Segment])> {
+        let ends = self.corners.iter().skip(1).map(|piece| piece.1 as usize).chain([self.edges.len()]);
+        self.corners
+            .iter()
+            .zip(ends)
+            .map(|((corners, start), end)| (corners, &self.edges[*start as usize..end]))
+    }
+
+    /// The area of a triangle's part in the zone; `None` if that is not known, and then it is one of the pieces.
+    fn judge(
+        &mut self,
+        corners: [DVec2; 3],
+        edges: impl IntoIterator<Item = Segment>,
+        d_m: f64,
+    ) -> Option<f64> {
+        let start = self.edges.len();
+        let known = self.part_in_zone(&corners, edges, d_m);
+        match known {
+            Some(_) => self.edges.truncate(start),
+            None => self.corners.push((corners, start as u32)),
+        }
+        known
+    }
+
+    /// As [`judge`](Self::judge), leaving what edges are near behind the others.
+    fn part_in_zone(
+        &mut self,
+        corners: &[DVec2; 3],
+        edges: impl IntoIterator<Item = Segment>,
+        d_m: f64,
+    ) -> Option<f64> {
+        let start = self.edges.len();
+        let (centre, radius) = around(corners);
+        let mut distances = [[0.0; 3]; FEW];
+        for edge in edges {
+            if edge.distance(centre) >= d_m + radius {
+                continue;
+            }
+            let [a, b, c] = *corners;
+            let far = [edge.distance(a), edge.distance(b), edge.distance(c)];
+            // The points near an edge form a convex set: if it holds the corners it holds the triangle.
+            if far.iter().all(|&far| far <= d_m) {
+                return Some(area(corners));
+            }
+            if let Some(slot) = distances.get_mut(self.edges.len() - start) {
+                *slot = far;
+            }
+            self.edges.push(edge);
+        }
+        let near = &mut self.edges[start..];
+        if (2..=FEW).contains(&near.len()) {
+            // Copies of an edge that differ by rounding must not keep each other in play for ever.
+            let count = drop_dominated(near, &distances, corners, 1e-9 * d_m);
+            self.edges.truncate(start + count);
+        }
+        match self.edges[start..] {
+            [] => Some(0.0),
+            [edge] => Some(covered_area(corners, &edge, d_m)),
+            [one, other] => covered_area_of_pair(corners, &one, &other, d_m),
+            _ => None,
+        }
+    }
 }
 
 /// So many times at most pieces are held against edges.
@@ -58,7 +115,7 @@ pub(super) fn share(strips: &Strips, open: &[Vec<OpenEdge>], d_m: f64) -> Exact 
     let total = total_area(strips);
     let mut covered = 0.0;
     let mut unknown = 0.0;
-    let mut undecided = Vec::new();
+    let mut undecided: Vec<Pieces> = Vec::new();
     for (s, judged) in
         map(strips.strips.len(), |s| judge_strip(&strips.strips[s], &open[s], d_m)).into_iter().enumerate()
     {
@@ -70,11 +127,12 @@ pub(super) fn share(strips: &Strips, open: &[Vec<OpenEdge>], d_m: f64) -> Exact 
             None => unknown += strips.strips[s].area,
         }
     }
+    let undecided: Vec<_> = undecided.iter().flat_map(Pieces::iter).collect();
     // Every undecided face may leave undecided the same share of its own area.
-    let left: f64 = undecided.iter().map(|piece| area(&piece.corners)).sum();
+    let left: f64 = undecided.iter().map(|(corners, _)| area(corners)).sum();
     let allowed = UNDECIDED * total / left;
     let looks = MOST_LOOKS / undecided.len().max(1);
-    for (part, left) in map(undecided.len(), |i| refine(&undecided[i], d_m, allowed, looks)) {
+    for (part, left) in map(undecided.len(), |i| refine(undecided[i], d_m, allowed, looks)) {
         covered += part;
         unknown += left;
     }
@@ -82,95 +140,61 @@ pub(super) fn share(strips: &Strips, open: &[Vec<OpenEdge>], d_m: f64) -> Exact 
 }
 
 /// The area that is known to lie in the zone, and the faces of which that is not known; `None` if nothing is known.
-fn judge_strip(strip: &Strip, open: &[OpenEdge], d_m: f64) -> Option<(f64, Vec<Piece>)> {
+fn judge_strip(strip: &Strip, open: &[OpenEdge], d_m: f64) -> Option<(f64, Vec<Pieces>)> {
     if open.is_empty() {
         return Some((0.0, Vec::new()));
     }
     let places: Vec<usize> = open.iter().map(|e| e.place).collect();
     let sources = Sources::new(open.iter().map(|e| Segment { from: e.from, to: e.to }).collect());
-    let mut covered = 0.0;
-    let mut undecided = Vec::new();
-    let near = flood(strip, &places, &sources, d_m)?;
-    let judged = map_chunks(near.len(), CHUNK, |range| {
+    let flooded = flood(strip, &places, &sources, d_m)?;
+    let judged = map_chunks(flooded.face_count(), CHUNK, |range| {
         let mut covered = 0.0;
-        let mut undecided = Vec::new();
+        let mut undecided = Pieces::default();
         for face in range {
             let corners = strip.triangle(face);
-            let edges: Vec<Segment> = match &near[face] {
-                Near::Whole => {
-                    covered += area(&corners);
-                    continue;
-                }
-                Near::Sources(near) => near.iter().map(|&s| sources.segment(s)).collect(),
+            covered += if flooded.is_within(face, d_m) {
+                area(&corners)
+            } else {
+                let edges = flooded.sources(face).map(|source| sources.segment(source));
+                undecided.judge(corners, edges, d_m).unwrap_or(0.0)
             };
-            match judge(Piece { corners, edges }, d_m) {
-                Verdict::Covered(part) => covered += part,
-                Verdict::Undecided(piece) => undecided.push(piece),
-            }
         }
         (covered, undecided)
     });
-    for (part, pieces) in judged {
-        covered += part;
-        undecided.extend(pieces);
-    }
-    Some((covered, undecided))
-}
-
-fn judge(mut piece: Piece, d_m: f64) -> Verdict {
-    let (centre, radius) = around(&piece.corners);
-    piece.edges.retain(|edge| edge.distance(centre) < d_m + radius);
-    // The points near an edge form a convex set: if it holds the corners it holds the triangle.
-    if piece.edges.iter().any(|edge| piece.corners.iter().all(|&p| edge.distance(p) <= d_m)) {
-        return Verdict::Covered(area(&piece.corners));
-    }
-    if (2..=FEW).contains(&piece.edges.len()) {
-        // Copies of an edge that differ by rounding must not keep each other in play for ever.
-        drop_dominated(&mut piece.edges, &piece.corners, 1e-9 * d_m);
-    }
-    let known = match piece.edges.as_slice() {
-        [] => Some(0.0),
-        [edge] => Some(covered_area(&piece.corners, edge, d_m)),
-        [one, other] => covered_area_of_pair(&piece.corners, one, other, d_m),
-        _ => None,
-    };
-    known.map_or(Verdict::Undecided(piece), Verdict::Covered)
+    let covered = judged.iter().map(|(part, _)| part).sum();
+    Some((covered, judged.into_iter().map(|(_, pieces)| pieces).collect()))
 }
 
 /// The area of the part of an undecided triangle that is known to be in the zone, and the area that stays undecided: at
 /// most the share `allowed` of the triangle, if that takes no more than about so many looks at edges.
-fn refine(whole: &Piece, d_m: f64, allowed: f64, looks: usize) -> (f64, f64) {
+fn refine((corners, edges): (&[DVec2; 3], &[Segment]), d_m: f64, allowed: f64, looks: usize) -> (f64, f64) {
     let mut covered = 0.0;
-    let mut level: Vec<Piece> = cut(whole).into();
-    let mut piece_area = 0.25 * area(&whole.corners);
-    let mut allowed_pieces = 4.0 * allowed;
+    let mut piece_area = area(corners);
+    let mut allowed_pieces = allowed;
+    let mut level = Pieces { corners: vec![(*corners, 0)], edges: edges.to_vec() };
     let mut looked = 0;
     for _ in 0..DEEPEST {
-        looked += level.iter().map(|piece| piece.edges.len()).sum::<usize>();
-        let mut undecided = Vec::new();
-        for piece in level {
-            match judge(piece, d_m) {
-                Verdict::Covered(part) => covered += part,
-                Verdict::Undecided(piece) => undecided.push(piece),
+        piece_area *= 0.25;
+        allowed_pieces *= 4.0;
+        looked += 4 * level.edges.len();
+        let mut undecided = Pieces::default();
+        for (corners, edges) in level.iter() {
+            for part in cut(corners) {
+                covered += undecided.judge(part, edges.iter().copied(), d_m).unwrap_or(0.0);
             }
         }
         level = undecided;
-        if level.len() as f64 <= allowed_pieces || looked > looks {
+        if level.corners.len() as f64 <= allowed_pieces || looked > looks {
             break;
         }
-        level = level.iter().flat_map(cut).collect();
-        piece_area *= 0.25;
-        allowed_pieces *= 4.0;
     }
-    (covered, piece_area * level.len() as f64)
+    (covered, piece_area * level.corners.len() as f64)
 }
 
 /// Four triangles of half the size.
-fn cut(piece: &Piece) -> [Piece; 4] {
-    let [a, b, c] = piece.corners;
+fn cut(&[a, b, c]: &[DVec2; 3]) -> [[DVec2; 3]; 4] {
     let (ab, bc, ca) = (a.midpoint(b), b.midpoint(c), c.midpoint(a));
     [[a, ab, ca], [ab, b, bc], [ca, bc, c], [bc, ca, ab]]
-        .map(|corners| Piece { corners, edges: piece.edges.clone() })
 }
 
 /// A point inside a triangle and how far it is to its farthest corner.

@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 
-use crate::buckets::Buckets;
 use crate::geometry::triangle;
-use crate::ids::{FaceId, HalfedgeId, PolygonId, VertexId};
+use crate::ids::{HalfedgeId, PolygonId, VertexId};
 use crate::mesh::defect::{MeshError, RepairReport};
 use crate::mesh::polygon::{self, Cut};
 use crate::mesh::soup::PolygonSoup;
 use crate::mesh::surface::{FaceSource, SurfaceMesh};
 use crate::mesh::topology::Topology;
+use crate::mesh::weld;
 use crate::parallel;
 
 /// The largest coordinate: its fourth power, which squared areas need, is far inside the range of `f64`.
@@ -73,29 +73,40 @@ impl SurfaceMesh {
         check_counts(soup)?;
         check_coordinates(&soup.positions)?;
         let mut report = RepairReport::default();
-        let vertex = weld(&soup.positions);
-        let mut faces = Faces::default();
-        faces.add_polygons(soup, &vertex, &mut report)?;
-        faces.drop_duplicates(vertex.len(), &mut report);
+        let repeated = weld::repeated(&soup.positions);
+        let first = first_at(&repeated, soup.positions.len());
+        let mut faces = match Faces::of_triangles(soup, first.as_deref()) {
+            Some(faces) => faces,
+            None => Faces::of_polygons(soup, first.as_deref(), &mut report)?,
+        };
+        if faces.twins.is_none() {
+            faces.drop_duplicates(soup.positions.len(), &mut report);
+        }
         if faces.corners.is_empty() {
             return Err(MeshError::NoArea { polygons: soup.polygon_count() });
         }
         let positions = faces.drop_isolated(&soup.positions);
-        report.welded_vertices = vertex.iter().zip(0..).filter(|&(&v, own)| v != VertexId(own)).count();
-        report.isolated_vertices = vertex.len() - report.welded_vertices - positions.len();
+        report.welded_vertices = repeated.len();
+        report.isolated_vertices = soup.positions.len() - repeated.len() - positions.len();
 
-        let Faces { corners, mut sources } = faces;
-        let (mut topology, split) = Topology::new(positions.len(), corners);
-        report.non_manifold_edges = split.non_manifold;
-        report.inconsistent_edges = split.inconsistent;
+        let Faces { corners, mut sources, areas, mut normals, twins } = faces;
+        let mut topology = match twins {
+            Some(twins) => Topology::joined(positions.len(), corners, twins),
+            None => {
+                let (topology, split) = Topology::new(positions.len(), corners);
+                report.non_manifold_edges = split.non_manifold;
+                report.inconsistent_edges = split.inconsistent;
+                topology
+            }
+        };
         if options.turn_outward {
-            let (turned, count) = inward_faces(&positions, &topology);
-            report.turned_components = count;
-            if count > 0 {
-                topology = turn(&topology, &mut sources, &turned);
+            let inward = inward_components(&positions, &topology, &areas, &normals);
+            report.turned_components = inward.iter().filter(|inward| **inward).count();
+            if report.turned_components > 0 {
+                turn(&inward, &positions, &mut topology, &mut sources, &mut normals);
             }
         }
-        Ok((Self::assemble(positions, topology, sources), report))
+        Ok((Self::measured(positions, topology, sources, areas, normals), report))
     }
 }
 
@@ -144,44 +155,16 @@ fn check_coordinates(positions: &[DVec3]) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// For each vertex the first one at the same position.
-fn weld(positions: &[DVec3]) -> Vec<VertexId> {
-    // Adding 0.0 turns -0.0 into 0.0.
-    let bits_of = |v: usize| positions[v].to_array().map(|x| (x + 0.0).to_bits());
-    let hash = |v: usize| {
-        bits_of(v)
-            .iter()
-            .fold(0u64, |h, x| ((h ^ x) ^ (h >> 29)).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(32))
-    };
-    // Hashes in buckets, each sorted by itself: one a vertex is several times faster than three coordinates.
-    const PIECE: usize = 1 << 14;
-    let pieces = positions.len().div_ceil(PIECE);
-    let bits = pieces.next_power_of_two().ilog2();
-    let buckets = Buckets::new(
-        pieces,
-        |p| (p * PIECE..((p + 1) * PIECE).min(positions.len())).map(|v| (hash(v), v as u32)).collect(),
-        1 << bits,
-        // The lower half of a hash has what the product mixed best.
-        |&(hash, _)| (u64::from(hash as u32) << bits >> 32) as usize,
-    );
-    let welded = parallel::map(buckets.count(), |bucket| {
-        let mut order: Vec<(u64, u32)> = buckets.bucket(bucket).copied().collect();
-        order.sort_unstable();
-        let mut welded = Vec::new();
-        for group in order.chunk_by(|a, b| a.0 == b.0).filter(|group| group.len() > 1) {
-            let mut same_hash: Vec<_> = group.iter().map(|&(_, v)| (bits_of(v as usize), v)).collect();
-            same_hash.sort_unstable();
-            for same in same_hash.chunk_by(|a, b| a.0 == b.0) {
-                welded.extend(same[1..].iter().map(|&(_, v)| (v, same[0].1)));
-            }
-        }
-        welded
-    });
-    let mut first: Vec<VertexId> = (0..positions.len()).map(VertexId::new).collect();
-    for (vertex, same) in welded.into_iter().flatten() {
-        first[vertex as usize] = VertexId(same);
+/// For each vertex the first one at the same position; `None` if that is itself everywhere.
+fn first_at(repeated: &[(VertexId, VertexId)], count: usize) -> Option<Vec<VertexId>> {
+    if repeated.is_empty() {
+        return None;
     }
-    first
+    let mut first: Vec<VertexId> = (0..count).map(VertexId::new).collect();
+    for &(vertex, same) in repeated {
+        first[vertex.index()] = same;
+    }
+    Some(first)
 }
 
 /// The triangles that are kept, with where they came from.
@@ -189,14 +172,66 @@ fn weld(positions: &[DVec3]) -> Vec<VertexId> {
 struct Faces {
     corners: Vec<[VertexId; 3]>,
     sources: Vec<FaceSource>,
+    areas: Vec<f64>,
+    normals: Vec<DVec3>,
+    /// The twins, as long as nothing has to be left out to join the triangles.
+    twins: Option<Vec<u32>>,
 }
 
 impl Faces {
-    /// Adds the triangles with an area of all polygons; `vertex` names the vertex to take for each of the soup's.
+    /// All polygons, if they are triangles with three corners and an area. `first` names the vertex to take for each of
+    /// the soup's.
+    fn of_triangles(soup: &PolygonSoup, first: Option<&[VertexId]>) -> Option<Self> {
+        let (polygons, remainder) = soup.corners.as_chunks::<3>();
+        let vertices = soup.positions.len();
+        let triangles = remainder.is_empty()
+            && soup.ends.len() == polygons.len()
+            && soup.ends.iter().zip(1..).all(|(&end, i)| end == 3 * i);
+        if !triangles || soup.corners.iter().any(|&corner| corner as usize >= vertices) {
+            return None;
+        }
+        let vertex = |corner: u32| first.map_or(VertexId(corner), |first| first[corner as usize]);
+        let corners = parallel::map(polygons.len(), |polygon| {
+            let [a, b, c] = polygons[polygon];
+            [vertex(a), vertex(b), vertex(c)]
+        });
+        if corners.iter().any(|&[a, b, c]| a == b || b == c || c == a) {
+            return None;
+        }
+        let source = |polygon: usize| {
+            let start = 3 * polygon as u32;
+            FaceSource {
+                polygon: PolygonId::new(polygon),
+                corners: [start, start + 1, start + 2],
+                turned: false,
+            }
+        };
+        let (((areas, normals), sources), twins) = parallel::join(
+            || (measure(&corners, &soup.positions), parallel::map(corners.len(), source)),
+            || Topology::clean_twins(vertices, &corners),
+        );
+        let all = areas.iter().all(|&area| area > 0.0);
+        all.then_some(Self { corners, sources, areas, normals, twins })
+    }
+
+    /// The triangles with an area of all polygons.
+    fn of_polygons(
+        soup: &PolygonSoup,
+        first: Option<&[VertexId]>,
+        report: &mut RepairReport,
+    ) -> Result<Self, MeshError> {
+        let mut faces = Self::default();
+        faces.add_polygons(soup, first, report)?;
+        (faces.areas, faces.normals) = measure(&faces.corners, &soup.positions);
+        faces.twins = Topology::clean_twins(soup.positions.len(), &faces.corners);
+        Ok(faces)
+    }
+
+    /// Adds the triangles with an area of all polygons.
     fn add_polygons(
         &mut self,
         soup: &PolygonSoup,
-        vertex: &[VertexId],
+        first: Option<&[VertexId]>,
         report: &mut RepairReport,
     ) -> Result<(), MeshError> {
         // Every triangle has three half-edges, which are numbered with 32 bits.
@@ -210,12 +245,11 @@ impl Faces {
             triangles.clear();
             for (corner, place) in soup.corner_range(polygon).enumerate() {
                 let index = soup.corners[place];
-                let v = *vertex.get(index as usize).ok_or(MeshError::IndexOutOfRange {
-                    polygon,
-                    corner,
-                    index,
-                    vertices: vertex.len(),
-                })?;
+                let vertices = soup.positions.len();
+                if index as usize >= vertices {
+                    return Err(MeshError::IndexOutOfRange { polygon, corner, index, vertices });
+                }
+                let v = first.map_or(VertexId(index), |first| first[index as usize]);
                 if corners.last() != Some(&v) {
                     corners.push(v);
                     places.push(place as u32);
@@ -285,10 +319,14 @@ impl Faces {
         report.duplicate_faces = repeated.len();
         repeated.sort_unstable();
         let keep = |face: u32| repeated.binary_search(&face).is_err();
-        let mut face = 0..;
-        self.corners.retain(|_| face.next().is_none_or(keep));
-        let mut face = 0..;
-        self.sources.retain(|_| face.next().is_none_or(keep));
+        fn retain<T>(items: &mut Vec<T>, keep: impl Fn(u32) -> bool) {
+            let mut face = 0..;
+            items.retain(|_| face.next().is_none_or(&keep));
+        }
+        retain(&mut self.corners, keep);
+        retain(&mut self.sources, keep);
+        retain(&mut self.areas, keep);
+        retain(&mut self.normals, keep);
     }
 
     /// Renumbers the corners without gaps and gives the positions they stand for, in the old order.
@@ -296,6 +334,9 @@ impl Faces {
         let mut used = vec![false; positions.len()];
         for v in self.corners.iter().flatten() {
             used[v.index()] = true;
+        }
+        if used.iter().all(|&used| used) {
+            return positions.to_vec();
         }
         let mut kept = Vec::with_capacity(positions.len());
         let number: Vec<VertexId> = positions
@@ -316,6 +357,20 @@ impl Faces {
     }
 }
 
+/// The areas and unit normals of triangles; both 0 where there is no area beyond rounding.
+fn measure(corners: &[[VertexId; 3]], positions: &[DVec3]) -> (Vec<f64>, Vec<DVec3>) {
+    parallel::map_pairs(corners.len(), |face| {
+        let [a, b, c] = corners[face];
+        let [a, b, c] = [positions[a.index()], positions[b.index()], positions[c.index()]];
+        if !has_area(a, b, c) {
+            return (0.0, DVec3::ZERO);
+        }
+        let vector = triangle::area_vector(a, b, c);
+        let length = vector.length();
+        (0.5 * length, vector / length)
+    })
+}
+
 /// Whether the triangle has an area beyond rounding, and a normal.
 fn has_area(a: DVec3, b: DVec3, c: DVec3) -> bool {
     let vector = triangle::area_vector(a, b, c);
@@ -326,59 +381,73 @@ fn has_area(a: DVec3, b: DVec3, c: DVec3) -> bool {
     vector.length_squared().is_normal() && vector.length() > FLAT * f64::EPSILON * coordinate * longest
 }
 
-/// Which faces belong to a closed component with a negative volume, and how many such components there are.
-fn inward_faces(positions: &[DVec3], topology: &Topology) -> (Vec<bool>, usize) {
-    #[derive(Clone, Copy)]
-    struct Component {
-        closed: bool,
-        low: DVec3,
-        high: DVec3,
-        volume: f64,
-        summands: f64,
-    }
-    let start = Component {
-        closed: true,
-        low: DVec3::INFINITY,
-        high: DVec3::NEG_INFINITY,
-        volume: 0.0,
-        summands: 0.0,
-    };
+/// Which components are closed and have a negative volume.
+fn inward_components(
+    positions: &[DVec3],
+    topology: &Topology,
+    areas: &[f64],
+    normals: &[DVec3],
+) -> Vec<bool> {
     let components = topology.components();
-    let mut of = vec![start; components.count];
-    let triangle = |face: FaceId| topology.corners(face).map(|v| positions[v.index()]);
+    let mut closed = vec![true; components.count];
     for face in topology.face_ids() {
-        let component = &mut of[components.of_face[face.index()] as usize];
-        component.closed &= (0..3).all(|c| topology.twin(HalfedgeId::of(face, c)).is_some());
-        for p in triangle(face) {
-            component.low = component.low.min(p);
-            component.high = component.high.max(p);
+        if (0..3).any(|c| topology.twin(HalfedgeId::of(face, c)).is_none()) {
+            closed[components.of_face[face.index()] as usize] = false;
         }
     }
-    for face in topology.face_ids() {
-        let component = &mut of[components.of_face[face.index()] as usize];
-        if component.closed {
-            // From the component's own centre: far from the origin the summands would swallow the volume.
-            let centre = component.low + (component.high - component.low) * 0.5;
-            let [a, b, c] = triangle(face).map(|p| p - centre);
-            let summand = a.dot(b.cross(c));
-            component.volume += summand;
-            component.summands += summand.abs();
+    if !closed.contains(&true) {
+        return closed;
+    }
+    let mut boxes = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); components.count];
+    let hold = |(low, high): &mut (DVec3, DVec3), p: DVec3| (*low, *high) = (low.min(p), high.max(p));
+    if let [all] = &mut boxes[..] {
+        // Every vertex belongs to it.
+        positions.iter().for_each(|&p| hold(all, p));
+    } else {
+        for (corners, &component) in topology.faces().iter().zip(&components.of_face) {
+            corners.iter().for_each(|v| hold(&mut boxes[component as usize], positions[v.index()]));
         }
     }
-    let inward = |c: &Component| c.closed && c.volume < -HOLLOW * c.summands;
-    let turned = components.of_face.iter().map(|&c| inward(&of[c as usize])).collect();
-    (turned, of.iter().filter(|c| inward(c)).count())
+    // From the component's own centre: far from the origin the summands would swallow the volume.
+    let centres: Vec<DVec3> = boxes.iter().map(|&(low, high)| low + (high - low) * 0.5).collect();
+    let mut volumes = vec![(0.0, 0.0); components.count];
+    for (face, &component) in components.of_face.iter().enumerate() {
+        let from_centre = positions[topology.faces()[face][0].index()] - centres[component as usize];
+        let summand = areas[face] * from_centre.dot(normals[face]);
+        let (volume, summands) = &mut volumes[component as usize];
+        *volume += summand;
+        *summands += summand.abs();
+    }
+    closed
+        .iter()
+        .zip(volumes)
+        .map(|(&closed, (volume, summands))| closed && volume < -HOLLOW * summands)
+        .collect()
 }
 
-/// The same triangles with those marked turned over, their sources with them.
-fn turn(topology: &Topology, sources: &mut [FaceSource], turned: &[bool]) -> Topology {
-    let mut corners = topology.faces().to_vec();
-    for ((corners, source), _) in corners.iter_mut().zip(sources).zip(turned).filter(|(_, turned)| **turned) {
-        corners.swap(1, 2);
+/// Turns the triangles of some components over, their sources and normals with them.
+fn turn(
+    turned: &[bool],
+    positions: &[DVec3],
+    topology: &mut Topology,
+    sources: &mut [FaceSource],
+    normals: &mut [DVec3],
+) {
+    let components = topology.components().of_face.clone();
+    let is_turned = |face: usize| turned[components[face] as usize];
+    topology.turn(|face| is_turned(face.index()));
+    for (_, source) in sources.iter_mut().enumerate().filter(|(face, _)| is_turned(*face)) {
         source.corners.swap(1, 2);
         source.turned = true;
     }
-    Topology::new(topology.vertex_count(), corners).0
+    const PIECE: usize = 1 << 12;
+    parallel::change_chunks(normals, PIECE, |start, normals| {
+        for (face, normal) in (start..).zip(normals).filter(|(face, _)| is_turned(*face)) {
+            let [a, b, c] = topology.faces()[face].map(|v| positions[v.index()]);
+            let vector = triangle::area_vector(a, b, c);
+            *normal = vector / vector.length();
+        }
+    });
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use glam::{DVec3, dvec3};
 use proptest::prelude::*;
 
 use super::*;
+use crate::ids::FaceId;
 
 fn soup(positions: &[[f64; 3]], polygons: &[&[u32]]) -> PolygonSoup {
     let mut soup =

@@ -7,6 +7,7 @@ pub mod shapes;
 mod soup;
 mod surface;
 mod topology;
+mod weld;
 
 pub use check::CheckOptions;
 pub use defect::{MeshError, RepairReport};

@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::geometry::triangle;
 use crate::ids::{FaceId, HalfedgeId, PolygonId, VertexId};
 use crate::mesh::topology::Topology;
+use crate::parallel;
 use crate::sample::SurfacePoint;
 
 /// Where a triangle of the checked mesh came from in the soup.
@@ -34,16 +35,25 @@ impl SurfaceMesh {
     /// Puts checked parts together. The caller has made sure that indices are in range, coordinates finite and
     /// areas positive.
     pub(crate) fn assemble(positions: Vec<DVec3>, topology: Topology, sources: Vec<FaceSource>) -> Self {
-        debug_assert_eq!(topology.face_count(), sources.len());
-        let mut areas = Vec::with_capacity(topology.face_count());
-        let mut normals = Vec::with_capacity(topology.face_count());
-        for corners in topology.faces() {
-            let [a, b, c] = corners.map(|v| positions[v.index()]);
+        let (areas, normals) = parallel::map_pairs(topology.face_count(), |face| {
+            let [a, b, c] = topology.faces()[face];
+            let [a, b, c] = [positions[a.index()], positions[b.index()], positions[c.index()]];
             let vector = triangle::area_vector(a, b, c);
             let length = vector.length();
-            areas.push(0.5 * length);
-            normals.push(vector / length);
-        }
+            (0.5 * length, vector / length)
+        });
+        Self::measured(positions, topology, sources, areas, normals)
+    }
+
+    /// As [`assemble`](Self::assemble), when the areas and unit normals of the faces are known.
+    pub(crate) fn measured(
+        positions: Vec<DVec3>,
+        topology: Topology,
+        sources: Vec<FaceSource>,
+        areas: Vec<f64>,
+        normals: Vec<DVec3>,
+    ) -> Self {
+        debug_assert!([sources.len(), areas.len(), normals.len()] == [topology.face_count(); 3]);
         let area = areas.iter().sum();
         Self { positions, topology, sources, areas, normals, area }
     }
@@ -104,7 +114,9 @@ impl SurfaceMesh {
     /// The positions of a face's corners.
     #[inline]
     pub fn triangle(&self, face: FaceId) -> [DVec3; 3] {
-        self.topology.corners(face).map(|v| self.positions[v.index()])
+        // `map` of an array is not made one with what is around it.
+        let [a, b, c] = self.topology.corners(face);
+        [self.position(a), self.position(b), self.position(c)]
     }
 
     /// The length of an edge.

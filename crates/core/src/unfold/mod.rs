@@ -12,8 +12,9 @@ use crate::ids::{FaceId, HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::sample::SurfacePoint;
-use crate::segment::Segmentation;
-use seams::Twins;
+use crate::segment::{Segment, Segmentation};
+use border::Loops;
+use lay::{Links, Planar};
 
 /// What lies on the other side of a border edge of a strip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +109,9 @@ impl Strip {
     /// The corners of its `index`-th face in the plane.
     #[inline]
     pub fn triangle(&self, index: usize) -> [DVec2; 3] {
-        self.corners[index].map(|v| self.vertices[v as usize])
+        // `map` of an array is not made one with what is around it.
+        let [a, b, c] = self.corners[index];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
     }
 }
 
@@ -144,12 +147,27 @@ pub fn unfold(mesh: &SurfaceMesh, segmentation: &Segmentation) -> Strips {
         }
     }
     let strips = parallel::map(segmentation.segments.len(), |s| {
-        let (segment, strip) = (&segmentation.segments[s], StripId::new(s));
-        let (mut planar, twins) =
-            parallel::join(|| lay::lay(mesh, segment, &places), || Twins::new(mesh, strip, &places, segment));
-        let in_border = seams::close(&mut planar, &twins);
-        lay::settle(&mut planar);
-        border::strip(mesh, strip, &places, planar, &twins, in_border)
+        lay_strip(mesh, StripId::new(s), &segmentation.segments[s], &places)
     });
     Strips { strips, places }
+}
+
+fn lay_strip(mesh: &SurfaceMesh, strip: StripId, segment: &Segment, places: &[FacePlace]) -> Strip {
+    let links = Links::new(mesh, segment, places);
+    // The way along the border does not depend on where triangles lie, unless edges coincide.
+    let (mut planar, border) =
+        parallel::join(|| lay::lay(mesh, segment, &links), || Loops::around(segment, &links));
+    drop(links);
+    let mut edges = border.edges(mesh, strip, places, &planar);
+    let (border, loops) = match seams::coincident(&planar.vertices, &edges) {
+        None => (edges, border.loops),
+        Some(first) => {
+            planar.rename(&first);
+            border::rename(&mut edges, &first);
+            border.without_closed(mesh, places, &edges)
+        }
+    };
+    let extent = lay::settle(&mut planar.vertices);
+    let Planar { faces, corners, vertices, area } = planar;
+    Strip { faces, corners, vertices, border, loops, area, extent }
 }
