@@ -30,13 +30,13 @@ impl Basis {
             let l = degree as f64;
             // (l - m)! / (l + m)!
             let mut ratio = 1.0;
-            for order in 0..=degree {
+            for (order, factor) in factors[degree].iter_mut().enumerate().take(degree + 1) {
                 let m = order as f64;
                 if order > 0 {
                     ratio /= (l + m) * (l - m + 1.0);
                 }
                 let both = if order > 0 { 2.0 } else { 1.0 };
-                factors[degree][order] = at_zero / (2.0 * l + 2.0) * (both * (2.0 * l + 1.0) * ratio).sqrt();
+                *factor = at_zero / (2.0 * l + 2.0) * (both * (2.0 * l + 1.0) * ratio).sqrt();
             }
             at_zero *= -l / (l + 1.0);
         }

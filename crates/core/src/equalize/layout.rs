@@ -55,6 +55,15 @@ impl Bounds {
 pub(super) struct Places([Vec<f64>; 6]);
 
 impl Places {
+    /// The position alone.
+    #[inline]
+    pub(super) fn position(&self, i: u32) -> DVec3 {
+        let [x, y, z, ..] = &self.0;
+        let i = i as usize;
+        DVec3::new(x[i], y[i], z[i])
+    }
+
+    #[inline]
     pub(super) fn at(&self, i: u32) -> Place {
         let [x, y, z, u, v, w] = &self.0;
         let i = i as usize;
@@ -111,8 +120,10 @@ pub(super) struct Layout {
 
 impl Layout {
     /// The positions of a tile's corners.
+    #[inline]
     pub(super) fn corners(&self, tile: &Tile) -> [DVec3; 3] {
-        tile.corners.map(|id| self.places.at(id).position)
+        let [a, b, c] = tile.corners;
+        [self.places.position(a), self.places.position(b), self.places.position(c)]
     }
 
     /// The block that holds a tile.

@@ -292,7 +292,8 @@ fn points_face_every_way_as_the_surface_does() {
             let faces = |face: crate::ids::FaceId| knot.face_normal(face).dot(view) > 0.0;
             let area: f64 = knot.topology().face_ids().filter(|&f| faces(f)).map(|f| knot.face_area(f)).sum();
             let count = points.iter().filter(|p| faces(p.face)).count() as f64;
-            square += (count - 150.0 * area / knot.area()).powf(2.0);
+            let excess = count - 150.0 * area / knot.area();
+            square += excess * excess;
             views += 1.0;
         }
     }
