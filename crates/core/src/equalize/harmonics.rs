@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-/// The highest degree. Those beyond have a hundredth of what random normals are off by.
+/// The highest degree. Six percent of the mean square by which random normals are off lie beyond.
 const DEGREE: usize = 9;
 
 /// Summed side by side.
