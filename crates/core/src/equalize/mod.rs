@@ -162,8 +162,20 @@ pub fn equalize(
         views::choose(mesh, scale.middle, &layout, &relaxed, &mut settled, options, progress);
     }
     let masses: Vec<f64> = relaxed.cells.iter().map(|cell| cell.mass).collect();
+    // A point without a place of its own stays, or goes where it is due if that is in another patch: its number counts there.
+    let stays = |due: &Due| {
+        let point = points[due.point as usize];
+        let block = &layout.blocks[due.block as usize];
+        let is_there = patches.of_face[point.face.index()] == Some(block.patch);
+        let spot = if is_there {
+            None
+        } else {
+            settle::nearest(&layout, block.tiles.clone(), block.centre.position)
+        };
+        spot.map_or(point, |spot| on_surface(mesh, &spot, scale.middle))
+    };
     if spread(&masses) > spread_before && spread(&masses) > UNEVEN {
-        return unmoved(points, &dues, nearest, spread_before);
+        return unmoved(points, &dues, nearest, spread_before, stays);
     }
     let mut moved = 0.0;
     let mut result = points.to_vec();
@@ -171,12 +183,9 @@ pub fn equalize(
     for ((due, place), cell) in dues.iter().zip(settled).zip(&relaxed.cells) {
         let slot = due.point as usize;
         cells[slot] = cell.mass;
-        if let Some(Spot { face, place }) = place {
-            let [a, b, c] = mesh.triangle(face);
-            let point = SurfacePoint { face, barycentric: triangle::nearest(a, b, c, place + scale.middle) };
-            moved += (mesh.locate(&point) - scale.middle).distance_squared(places[slot]);
-            result[slot] = point;
-        }
+        let point = place.map_or_else(|| stays(due), |spot| on_surface(mesh, &spot, scale.middle));
+        moved += (mesh.locate(&point) - scale.middle).distance_squared(places[slot]);
+        result[slot] = point;
     }
     let report = EqualizeReport {
         spread_before,
@@ -186,14 +195,28 @@ pub fn equalize(
     Equalized { points: result, cells, report }
 }
 
+/// A place of the surface as a point of the mesh.
+fn on_surface(mesh: &SurfaceMesh, spot: &Spot, middle: DVec3) -> SurfacePoint {
+    let [a, b, c] = mesh.triangle(spot.face);
+    SurfacePoint { face: spot.face, barycentric: triangle::nearest(a, b, c, spot.place + middle) }
+}
+
 /// The points as they were, with the cells that they have: where relaxation does not find its way, nothing is better.
-fn unmoved(points: &[SurfacePoint], dues: &[Due], nearest: Vec<f64>, spread: f64) -> Equalized {
+fn unmoved(
+    points: &[SurfacePoint],
+    dues: &[Due],
+    nearest: Vec<f64>,
+    spread: f64,
+    stays: impl Fn(&Due) -> SurfacePoint,
+) -> Equalized {
     let mut cells = vec![0.0; points.len()];
+    let mut points = points.to_vec();
     for (due, mass) in dues.iter().zip(nearest) {
         cells[due.point as usize] = mass;
+        points[due.point as usize] = stays(due);
     }
     let report = EqualizeReport { spread_before: spread, spread_after: spread, moved: 0.0 };
-    Equalized { points: points.to_vec(), cells, report }
+    Equalized { points, cells, report }
 }
 
 /// The points in the order of their patches; what one patch has too many of, the next ones get.

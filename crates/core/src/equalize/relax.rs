@@ -22,6 +22,13 @@ const MOST_STEP: f64 = 1.0;
 /// At most this many rounds at the end in which only weights change.
 const SETTLING: u32 = 8;
 
+/// Where cells spread by more than this share then, points move again from where they are. That happens to few points that
+/// lie far from where they are due.
+const ASTRAY: f64 = 0.1;
+
+/// At most so many times.
+const AGAIN: u32 = 1;
+
 /// Weights are settled by one more step when the cells' masses spread by at most this share of the mean, and none is off
 /// by more than [`CLOSEST`].
 const CLOSE: f64 = 0.005;
@@ -49,15 +56,24 @@ pub(super) fn relax(
     progress: &dyn Progress,
 ) -> Relaxed {
     let mut settled = false;
-    for round in 0..=rounds + SETTLING {
+    let (mut again, mut spread) = (AGAIN, 0.0);
+    // Points move in the rounds before this one.
+    let (each, mut rounds) = (rounds, rounds);
+    for round in 0.. {
         near.follow(layout, &sites);
+        if round == rounds + SETTLING && spread > ASTRAY && again > 0 {
+            again -= 1;
+            rounds = round + each;
+        }
         if settled || round == rounds + SETTLING || progress.is_cancelled() {
             break;
         }
         let diagram = diagram(layout, &near, &sites);
         // The last rounds only fit the weights to where the points are; the very last needs no look at what it did,
         // because errors are squared in each.
-        settled = round >= rounds && close(&diagram, wanted);
+        let worst;
+        (spread, worst) = errors(&diagram, wanted);
+        settled = round >= rounds && spread <= CLOSE && worst <= CLOSEST;
         let step = match round + 1 {
             r if r < rounds => OVERSHOOT,
             r if r == rounds => 1.0,
@@ -83,10 +99,11 @@ pub(super) fn relax(
     Relaxed { sites, near, cells, holdings }
 }
 
-fn close(diagram: &Diagram, wanted: &[f64]) -> bool {
+/// By how much the masses of cells are off what is wanted, as shares of it: in the root mean square, and at most.
+fn errors(diagram: &Diagram, wanted: &[f64]) -> (f64, f64) {
     let errors = diagram.cells.iter().zip(wanted).map(|(c, w)| (c.mass / w - 1.0).abs());
     let (squares, worst) = errors.fold((0.0, 0.0_f64), |(s, m), e| (s + e * e, m.max(e)));
-    squares <= CLOSE * CLOSE * wanted.len() as f64 && worst <= CLOSEST
+    (libm::sqrt(squares / wanted.len() as f64), worst)
 }
 
 fn to_centroid(site: &Site, cell: &Cell) -> DVec3 {

@@ -24,15 +24,16 @@ pub(super) fn settle(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>) 
             (Some(sides), Some(due)) => due[site] == Some(sides.of(layout.tiles[holding.tile as usize].face)),
             _ => true,
         };
-        nearest(layout, relaxed.holdings.of(site).iter().filter(may_stand), centroid)
+        let tiles = relaxed.holdings.of(site).iter().filter(may_stand).map(|holding| holding.tile as usize);
+        nearest(layout, tiles, centroid)
     })
 }
 
 /// The place on some tiles that lies nearest to a wanted one.
-fn nearest<'a>(layout: &Layout, tiles: impl Iterator<Item = &'a Holding>, wanted: DVec3) -> Option<Spot> {
+pub(super) fn nearest(layout: &Layout, tiles: impl Iterator<Item = usize>, wanted: DVec3) -> Option<Spot> {
     let mut best: Option<(f64, Spot)> = None;
-    for holding in tiles {
-        let tile = &layout.tiles[holding.tile as usize];
+    for tile in tiles {
+        let tile = &layout.tiles[tile];
         let [a, b, c] = layout.corners(tile);
         let least = best.map_or(f64::INFINITY, |(least, _)| least);
         // A tile whose nearest corner is farther by more than its longest side has no nearer place.
