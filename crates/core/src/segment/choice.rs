@@ -39,6 +39,7 @@ const SMALL: usize = 20_000;
 pub(super) fn least_open(mesh: &SurfaceMesh, options: &SegmentOptions, tolerance: f64) -> Segmentation {
     let components = mesh.topology().components();
     let (shapes, seeds) = parallel::join(|| Shapes::new(mesh), || component_seeds(mesh));
+    let tolerance = shapes.relative(tolerance);
     let count = if mesh.face_count() > SMALL { 2 } else { CANDIDATES.len() };
     let tried = parallel::map(count, |k| match CANDIDATES[k] {
         Candidate::Fit(tie) => {

@@ -4,7 +4,7 @@
 use glam::DVec2;
 
 use super::frontier::{Cost, Frontier};
-use super::planar::{self, Planar, Shapes, ends};
+use super::planar::{Planar, Shapes, ends};
 use super::{Attachment, Segment};
 use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::SurfaceMesh;
@@ -52,7 +52,7 @@ impl State {
     }
 }
 
-/// A segment, and the length of its cuts that are open: each edge counts once.
+/// A segment, and the length of its cuts that are open, in units of the shapes: each edge counts once.
 pub(super) struct Fitted {
     /// For each face the side across which it joined; of the first face, its first side.
     pub(super) sides: Vec<HalfedgeId>,
@@ -71,7 +71,7 @@ impl Fitted {
 
 struct Fitting<'a> {
     shapes: &'a Shapes,
-    /// Gaps up to this stay closed.
+    /// Gaps up to this stay closed, in units of the shapes.
     tolerance: f64,
     tie: Tie,
     state: Vec<State>,
@@ -85,7 +85,7 @@ fn other_corners(corner: usize) -> [usize; 2] {
     [[1, 2], [0, 2], [0, 1]][corner]
 }
 
-/// A segment for each component, grown from the seeds, one in each. O(F log F).
+/// A segment for each component, grown from the seeds, one in each; the tolerance in units of the shapes. O(F log F).
 pub(super) fn fit(
     mesh: &SurfaceMesh,
     shapes: &Shapes,
@@ -115,7 +115,7 @@ impl Fitting<'_> {
     /// Grows a segment from a face until nothing is left beside it.
     fn grow(&mut self, mesh: &SurfaceMesh, seed: FaceId) -> Fitted {
         let mut fitted = Fitted { sides: vec![HalfedgeId::of(seed, 0)], open: 0.0 };
-        self.planar.lay(seed, planar::first(mesh, seed));
+        self.planar.lay(seed, self.shapes.first(mesh, seed));
         self.join(seed, 0..3);
         while let Some((cost, across)) = self.frontier.pop() {
             let face = across.face();

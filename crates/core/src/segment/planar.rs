@@ -12,6 +12,7 @@ use crate::parallel;
 /// A side of a triangle and what lies behind it, in single precision: enough to choose by, and little to look at.
 #[derive(Clone, Copy)]
 pub(super) struct Side {
+    /// In units of [`Shapes::unit`], so that what is rounded here does not hang on the unit of the mesh.
     length: f32,
     /// The squared distance of the unit normals on both sides of it: 0 where flat, 4 where folded back.
     bend: f32,
@@ -24,10 +25,10 @@ pub(super) struct Side {
 
 impl Side {
     /// A side and where it starts and ends.
-    fn of(mesh: &SurfaceMesh, side: HalfedgeId, from: DVec3, to: DVec3) -> Self {
+    fn of(mesh: &SurfaceMesh, unit: f64, side: HalfedgeId, from: DVec3, to: DVec3) -> Self {
         let topology = mesh.topology();
         let square = from.distance_squared(to);
-        let length = square.sqrt() as f32;
+        let length = (square.sqrt() / unit) as f32;
         let Some(twin) = topology.twin(side) else {
             return Self { length, bend: 0.0, apex: [0.0; 2], twin: None };
         };
@@ -100,17 +101,25 @@ pub(super) struct Shape(pub(super) [Side; 3]);
 /// The shapes of all triangles.
 pub(super) struct Shapes {
     of_face: Vec<Shape>,
+    /// The root of the surface's area: lengths, in the plane too, are multiples of it.
+    unit: f64,
 }
 
 impl Shapes {
     pub(super) fn new(mesh: &SurfaceMesh) -> Self {
+        let unit = libm::sqrt(mesh.area());
         let of_face = |face: usize| {
             let face = FaceId::new(face);
             let [a, b, c] = mesh.triangle(face);
-            let side = |corner, from, to| Side::of(mesh, HalfedgeId::of(face, corner), from, to);
+            let side = |corner, from, to| Side::of(mesh, unit, HalfedgeId::of(face, corner), from, to);
             Shape([side(0, a, b), side(1, b, c), side(2, c, a)])
         };
-        Self { of_face: parallel::map(mesh.face_count(), of_face) }
+        Self { of_face: parallel::map(mesh.face_count(), of_face), unit }
+    }
+
+    /// A length in the units of the mesh as a multiple of the unit here.
+    pub(super) fn relative(&self, length: f64) -> f64 {
+        length / self.unit
     }
 
     pub(super) fn face_count(&self) -> usize {
@@ -126,18 +135,18 @@ impl Shapes {
     pub(super) fn side(&self, side: HalfedgeId) -> &Side {
         &self.of(side.face()).0[side.corner()]
     }
+
+    /// The corners of the first face of a segment.
+    pub(super) fn first(&self, mesh: &SurfaceMesh, face: FaceId) -> [DVec2; 3] {
+        let [a, b, c] = mesh.triangle(face);
+        let to = DVec2::new(self.of(face).0[0].length(), 0.0);
+        laid(0, (DVec2::ZERO, to), apex(a, b, c, mesh.face_area(face)))
+    }
 }
 
 /// Where each face lies that is laid.
 pub(super) struct Planar {
     corners: Vec<[DVec2; 3]>,
-}
-
-/// The corners of the first face of a segment.
-pub(super) fn first(mesh: &SurfaceMesh, face: FaceId) -> [DVec2; 3] {
-    let [a, b, c] = mesh.triangle(face);
-    let length = a.distance(b) as f32;
-    laid(0, (DVec2::ZERO, DVec2::new(length.into(), 0.0)), apex(a, b, c, mesh.face_area(face)))
 }
 
 impl Planar {
@@ -151,7 +160,7 @@ impl Planar {
         for attachment in segmentation.segments.iter().flat_map(|s| &s.attachments) {
             let laid = match attachment.across.and_then(|across| planar.beside(shapes, across)) {
                 Some(laid) => laid,
-                None => first(mesh, attachment.face),
+                None => shapes.first(mesh, attachment.face),
             };
             planar.lay(attachment.face, laid);
         }
@@ -189,7 +198,7 @@ impl Planar {
     }
 
     /// For each component the length of its edges, each once, whose two sides lie in different segments or farther
-    /// apart than `tolerance`. Linear time.
+    /// apart than `tolerance`, all in units of the shapes. Linear time.
     pub(super) fn open_lengths(
         &self,
         shapes: &Shapes,
