@@ -115,7 +115,7 @@ impl Lattice {
     ) {
         /// Points that are held back so that lanes are full.
         const HELD: usize = 16 * LANES;
-        /// As many points as a row of a triangle has, or more.
+        /// As a rule as many points as a row of a triangle has, or more.
         const TOGETHER: usize = 8;
         let mut look = |indices: &[u64]| {
             for some in indices.chunks(LANES) {

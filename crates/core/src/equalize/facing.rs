@@ -1,4 +1,4 @@
-//! Points that face every way as the surface does: each takes the face of its cell, near the centroid, that evens out
+//! Points that face every way as the surface does: each takes the face of its cell, near its home, that evens out
 //! the normals of the points, over all of the mesh and over its parts.
 //!
 //! What is visible is first of all what faces the viewer. Cells are as wide as the distance of the points, and the surface
@@ -11,24 +11,23 @@ use super::harmonics::{Basis, COUNT, Harmonics, dot};
 use super::layout::Layout;
 use super::places::Spot;
 use super::relax::Relaxed;
-use super::settle::nearest_on;
-use super::sides::Sides;
+use super::settle::{Cells, nearest_on};
 use crate::geometry::triangle;
 use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 
-/// What it costs to stand the distance of the points away from the centroid, against the mean square over all directions of
+/// What it costs to stand the distance of the points away from home, against the mean square over all directions of
 /// how many points too many face there.
 const STAY: f64 = 32.0;
 
-/// At most so many distances of the points farther from the centroid than the nearest place.
+/// At most so many distances of the points farther from home than the place that is taken now.
 const REACH: f64 = 0.2;
 
 /// So many times each point chooses: after that hardly anything changes.
 const SWEEPS: usize = 3;
 
-/// From the place of a face that is nearest to the centroid a point steps so much of the way to the middle of its tile: where
+/// From the place of a face that is nearest to its home a point steps so much of the way to the middle of its tile: where
 /// faces meet, what one of them should see is hidden by the other.
 const INWARD: f64 = 0.1;
 
@@ -65,36 +64,31 @@ struct Stand {
     chosen: Option<u32>,
 }
 
-/// Moves the points of `own`, one for each site, to other faces of their cells, each on its side. Linear in tiles.
-pub(super) fn face_evenly(
-    mesh: &SurfaceMesh,
-    layout: &Layout,
-    relaxed: &Relaxed,
-    sides: Option<&Sides>,
-    own: &mut [Option<Spot>],
-) {
+/// Moves points, one for each site where it has one, to other faces of their cells, each on its side. Linear in tiles.
+pub(super) fn face_evenly(mesh: &SurfaceMesh, cells: &Cells<'_>, spots: &mut [Option<Spot>]) {
+    let Cells { layout, relaxed, homes, .. } = cells;
     let normals = Normals::new(mesh);
-    let choices = parallel::map_chunks(own.len(), SITES, |sites| {
+    let choices = parallel::map_chunks(spots.len(), SITES, |sites| {
         let mut choices = Choices { ends: Vec::with_capacity(sites.len()), all: Vec::new() };
         for site in sites {
-            if let Some(now) = &own[site] {
-                list(layout, relaxed, sides, &normals, site, now, &mut choices.all);
+            if let Some(now) = &spots[site] {
+                list(cells, &normals, site, now, &mut choices.all);
             }
             choices.ends.push(choices.all.len() as u32);
         }
         choices
     });
-    let mut stands = stands(relaxed, &normals, own);
+    let mut stands = stands(relaxed, &normals, homes, spots);
     let mut excess = Excess::new(layout, relaxed, &normals, &stands);
     for _ in 0..SWEEPS {
         let mut changed = false;
         for (chunk, choices) in choices.iter().enumerate() {
             let mut start = 0;
             for (site, &end) in (chunk * SITES..).zip(&choices.ends) {
-                let own = &choices.all[start..end as usize];
+                let of_site = &choices.all[start..end as usize];
                 start = end as usize;
                 if let Some(stand) = &mut stands[site] {
-                    changed |= excess.choose(site, stand, own, &normals);
+                    changed |= excess.choose(site, stand, of_site, &normals);
                 }
             }
         }
@@ -102,43 +96,36 @@ pub(super) fn face_evenly(
             break;
         }
     }
-    for (site, (own, stand)) in own.iter_mut().zip(&stands).enumerate() {
+    for (site, (spot, stand)) in spots.iter_mut().zip(&stands).enumerate() {
         if let Some(tile) = stand.and_then(|stand| stand.chosen) {
             let tile = &layout.tiles[tile as usize];
-            let place = place_on(layout.corners(tile), relaxed.cells[site].centroid());
-            *own = Some(Spot { face: tile.face, place });
+            let place = place_on(layout.corners(tile), homes[site]);
+            *spot = Some(Spot { face: tile.face, place });
         }
     }
 }
 
-/// What a site may choose: the nearest places to its centroid on other faces.
-fn list(
-    layout: &Layout,
-    relaxed: &Relaxed,
-    sides: Option<&Sides>,
-    normals: &Normals,
-    site: usize,
-    now: &Spot,
-    choices: &mut Vec<Choice>,
-) {
-    let centroid = relaxed.cells[site].centroid();
+/// What a site may choose: places near its home on faces with other normals.
+fn list(cells: &Cells<'_>, normals: &Normals, site: usize, now: &Spot, choices: &mut Vec<Choice>) {
+    let Cells { layout, relaxed, sides, ref homes } = *cells;
+    let home = homes[site];
     let distance = relaxed.sites[site].distance;
-    let farthest = now.place.distance(centroid) + REACH * distance;
-    let own = normals.of_face[now.face.index()];
+    let farthest = now.place.distance(home) + REACH * distance;
+    let normal_now = normals.of_face[now.face.index()];
     for holding in relaxed.holdings.of(site) {
         let tile = &layout.tiles[holding.tile as usize];
         let normal = normals.of_face[tile.face.index()];
         let is_beyond = sides.is_some_and(|sides| sides.of(tile.face) != sides.of(now.face));
-        if normal == own || is_beyond {
+        if normal == normal_now || is_beyond {
             continue;
         }
         let corners = layout.corners(tile);
         // Too far with all that it has.
-        let (_, side) = triangle::longest_side(corners);
-        if corners[0].distance_squared(centroid) > 2.0 * (farthest * farthest + side) {
+        let (_, longest_square) = triangle::longest_side(corners);
+        if corners[0].distance_squared(home) > 2.0 * (farthest * farthest + longest_square) {
             continue;
         }
-        let away = place_on(corners, centroid).distance_squared(centroid);
+        let away = place_on(corners, home).distance_squared(home);
         if away < farthest * farthest {
             let cost = (STAY * away / (distance * distance)) as f32;
             choices.push(Choice { tile: holding.tile, normal, cost });
@@ -147,20 +134,25 @@ fn list(
 }
 
 /// The place on a tile that a point takes.
-fn place_on(corners: [DVec3; 3], centroid: DVec3) -> DVec3 {
-    nearest_on(corners, centroid).lerp(corners.iter().sum::<DVec3>() / 3.0, INWARD)
+fn place_on(corners: [DVec3; 3], home: DVec3) -> DVec3 {
+    nearest_on(corners, home).lerp(corners.iter().sum::<DVec3>() / 3.0, INWARD)
 }
 
 /// Where all points stand.
-fn stands(relaxed: &Relaxed, normals: &Normals, own: &[Option<Spot>]) -> Vec<Option<Stand>> {
-    let stand = |(site, own): (usize, &Option<Spot>)| {
-        let own = own.as_ref()?;
+fn stands(
+    relaxed: &Relaxed,
+    normals: &Normals,
+    homes: &[DVec3],
+    spots: &[Option<Spot>],
+) -> Vec<Option<Stand>> {
+    let stand = |(site, spot): (usize, &Option<Spot>)| {
+        let spot = spot.as_ref()?;
         let distance = relaxed.sites[site].distance;
-        let away = own.place.distance_squared(relaxed.cells[site].centroid());
+        let away = spot.place.distance_squared(homes[site]);
         let cost = (STAY * away / (distance * distance)) as f32;
-        Some(Stand { normal: normals.of_face[own.face.index()], cost, chosen: None })
+        Some(Stand { normal: normals.of_face[spot.face.index()], cost, chosen: None })
     };
-    own.iter().enumerate().map(stand).collect()
+    spots.iter().enumerate().map(stand).collect()
 }
 
 /// By how much the harmonics of points exceed those of the surface.

@@ -9,11 +9,11 @@ use glam::DVec3;
 /// The highest degree. Six percent of the mean square by which random normals are off lie beyond.
 const DEGREE: usize = 9;
 
-/// Summed side by side.
-const LANES: usize = 8;
+/// Singles that are summed side by side.
+const SINGLES: usize = 8;
 
 /// The harmonics of a normal, 3 + 7 + 11 + 15 + 19 of them, and zeros up to whole lanes.
-pub(super) const COUNT: usize = 55_usize.next_multiple_of(LANES);
+pub(super) const COUNT: usize = 55_usize.next_multiple_of(SINGLES);
 
 /// Scaled so that the sum of the squares of an error is its mean square over directions.
 pub(super) type Harmonics = [f32; COUNT];
@@ -79,9 +79,9 @@ impl Basis {
 /// The sum of products, always in the same order.
 #[inline]
 pub(super) fn dot(a: &Harmonics, b: &Harmonics) -> f32 {
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.chunks_exact(LANES).zip(b.chunks_exact(LANES)) {
-        for lane in 0..LANES {
+    let mut sums = [0.0; SINGLES];
+    for (a, b) in a.chunks_exact(SINGLES).zip(b.chunks_exact(SINGLES)) {
+        for lane in 0..SINGLES {
             sums[lane] += a[lane] * b[lane];
         }
     }

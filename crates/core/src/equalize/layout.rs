@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::balance::{Item, balance};
 use super::tiles::{Tile, Tiles};
+use crate::ids::FaceId;
 use crate::parallel;
 
 /// A place in position and scaled normal.
@@ -118,12 +119,26 @@ pub(super) struct Layout {
     pub(super) blocks: Vec<Block>,
 }
 
+/// The face of a tile and the positions of its corners.
+#[derive(Clone, Copy)]
+pub(super) struct Ground {
+    pub(super) face: FaceId,
+    pub(super) corners: [DVec3; 3],
+}
+
 impl Layout {
     /// The positions of a tile's corners.
     #[inline]
     pub(super) fn corners(&self, tile: &Tile) -> [DVec3; 3] {
         let [a, b, c] = tile.corners;
         [self.places.position(a), self.places.position(b), self.places.position(c)]
+    }
+
+    /// A tile to stand on.
+    #[inline]
+    pub(super) fn ground(&self, tile: usize) -> Ground {
+        let tile = &self.tiles[tile];
+        Ground { face: tile.face, corners: self.corners(tile) }
     }
 
     /// The block that holds a tile.

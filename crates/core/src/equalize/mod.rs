@@ -2,13 +2,14 @@
 //!
 //! Coarse to fine: whole numbers of points for components (`patches`), a hierarchy of balanced splits down to a region for
 //! each point (`balance`), then relaxation of power cells on the surface (`relax`); at last the side of a crease on which a
-//! point stands, so that planes and segments have their shares (`sides`), and the face of its cell, so that as many points
+//! point stands, so that planes and segments have their shares (`sides`), its place there if points are few (`energy`), and the face of its cell, so that as many points
 //! face every way as the surface asks for (`facing`).
 
 mod balance;
 mod capacity;
 mod clip;
 mod diagram;
+mod energy;
 mod facing;
 mod harmonics;
 mod holdings;
@@ -39,6 +40,7 @@ use crate::parallel;
 use crate::progress::Progress;
 use crate::sample::SurfacePoint;
 use balance::Item;
+use energy::homes;
 use facing::face_evenly;
 use layout::{Due, Place, lay_out};
 use near::{Near, Site};
@@ -46,7 +48,7 @@ use owners::diagram;
 use patches::Patches;
 use places::Spot;
 use relax::relax;
-use settle::settle;
+use settle::{Cells, settle};
 use sides::Sides;
 use tiles::{Scale, tiles};
 
@@ -152,14 +154,17 @@ pub fn equalize(
     }
     let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
-    let homes: Vec<Place> = dues.iter().map(|due| layout.blocks[due.block as usize].centre).collect();
-    let relaxed = relax(&layout, near, start, &homes, &wanted, options.rounds, progress);
+    let centres: Vec<Place> = dues.iter().map(|due| layout.blocks[due.block as usize].centre).collect();
+    let relaxed = relax(&layout, near, start, &centres, &wanted, options.rounds, progress);
     let sides = Sides::new(mesh, strip_of_face, density, n);
     let mut settled = settle(&layout, &relaxed, sides.as_ref());
-    face_evenly(mesh, &layout, &relaxed, sides.as_ref(), &mut settled);
-    spacing::make_way(&layout, &relaxed, sides.as_ref(), &mut settled);
+    let homes = homes(&layout, &relaxed, sides.as_ref(), &mut settled);
+    let cells = Cells { layout: &layout, relaxed: &relaxed, sides: sides.as_ref(), homes };
+    face_evenly(mesh, &cells, &mut settled);
+    spacing::make_way(&cells, &mut settled);
     if let Some(options) = &options.for_views {
-        views::choose(mesh, scale.middle, &layout, &relaxed, &mut settled, options, progress);
+        views::choose(mesh, scale.middle, &cells, &mut settled, options, progress);
+        spacing::make_way(&cells, &mut settled);
     }
     let masses: Vec<f64> = relaxed.cells.iter().map(|cell| cell.mass).collect();
     // A point without a place of its own stays, or goes where it is due if that is in another patch: its number counts there.
@@ -170,7 +175,7 @@ pub fn equalize(
         let spot = if is_there {
             None
         } else {
-            settle::nearest(&layout, block.tiles.clone(), block.centre.position)
+            settle::nearest(block.tiles.clone().map(|tile| layout.ground(tile)), block.centre.position)
         };
         spot.map_or(point, |spot| on_surface(mesh, &spot, scale.middle))
     };

@@ -3,12 +3,21 @@
 use glam::DVec3;
 
 use super::holdings::Holding;
-use super::layout::Layout;
+use super::layout::{Ground, Layout};
 use super::places::Spot;
 use super::relax::Relaxed;
 use super::sides::Sides;
 use crate::geometry::triangle;
 use crate::parallel;
+
+/// Cells whose points look for places in them.
+pub(super) struct Cells<'a> {
+    pub(super) layout: &'a Layout,
+    pub(super) relaxed: &'a Relaxed,
+    pub(super) sides: Option<&'a Sides>,
+    /// Where the point of each is at home.
+    pub(super) homes: Vec<DVec3>,
+}
 
 /// The place of each cell's tiles that lies nearest to its centroid, on the side where the cell's point is due; `None`
 /// for an empty cell.
@@ -24,17 +33,15 @@ pub(super) fn settle(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>) 
             (Some(sides), Some(due)) => due[site] == Some(sides.of(layout.tiles[holding.tile as usize].face)),
             _ => true,
         };
-        let tiles = relaxed.holdings.of(site).iter().filter(may_stand).map(|holding| holding.tile as usize);
-        nearest(layout, tiles, centroid)
+        let tiles = relaxed.holdings.of(site).iter().filter(may_stand);
+        nearest(tiles.map(|holding| layout.ground(holding.tile as usize)), centroid)
     })
 }
 
 /// The place on some tiles that lies nearest to a wanted one.
-pub(super) fn nearest(layout: &Layout, tiles: impl Iterator<Item = usize>, wanted: DVec3) -> Option<Spot> {
+pub(super) fn nearest(tiles: impl Iterator<Item = Ground>, wanted: DVec3) -> Option<Spot> {
     let mut best: Option<(f64, Spot)> = None;
-    for tile in tiles {
-        let tile = &layout.tiles[tile];
-        let [a, b, c] = layout.corners(tile);
+    for Ground { face, corners: [a, b, c] } in tiles {
         let least = best.map_or(f64::INFINITY, |(least, _)| least);
         // A tile whose nearest corner is farther by more than its longest side has no nearer place.
         let (_, side) = triangle::longest_side([a, b, c]);
@@ -44,7 +51,7 @@ pub(super) fn nearest(layout: &Layout, tiles: impl Iterator<Item = usize>, wante
         let place = nearest_on([a, b, c], wanted);
         let distance = place.distance_squared(wanted);
         if distance < least {
-            best = Some((distance, Spot { face: tile.face, place }));
+            best = Some((distance, Spot { face, place }));
         }
     }
     best.map(|(_, spot)| spot)

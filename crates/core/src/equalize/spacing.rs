@@ -4,11 +4,10 @@
 
 use glam::DVec3;
 
-use super::layout::Layout;
+use super::holdings::Holding;
 use super::near::Runs;
 use super::places::{Spot, spots};
-use super::relax::Relaxed;
-use super::sides::Sides;
+use super::settle::Cells;
 use crate::parallel;
 
 /// The distance that points keep, in distances of the points: a little more than half of the hexagonal ideal.
@@ -29,7 +28,7 @@ struct Attempt {
     least: f64,
     /// From how many places of its cell a point chooses.
     choices: u32,
-    /// Of a shortage of distance, squared, so much counts against a way from the centroid, squared.
+    /// Of a shortage of distance, squared, so much counts against a way from home, squared.
     weight: f64,
 }
 
@@ -41,30 +40,42 @@ const ATTEMPTS: [Attempt; 3] = [
 
 /// Moves the points of `own`, one for each site, that stand closer than half of the hexagonal ideal to another. Each
 /// stays on its side.
-pub(super) fn make_way(layout: &Layout, relaxed: &Relaxed, sides: Option<&Sides>, own: &mut [Option<Spot>]) {
+pub(super) fn make_way(cells: &Cells<'_>, own: &mut [Option<Spot>]) {
+    let widths = parallel::map(own.len(), |site| width(cells, site));
     for (seed, attempt) in (0..).zip(&ATTEMPTS) {
-        if !move_aside(layout, relaxed, sides, own, attempt, seed) {
+        if !move_aside(cells, &widths, own, attempt, seed) {
             break;
         }
     }
 }
 
+/// The root of a cell's area: the distance of the points, were all cells alike.
+fn width(cells: &Cells<'_>, site: usize) -> f64 {
+    let Cells { layout, relaxed, .. } = cells;
+    let area = |holding: &Holding| {
+        let tile = &layout.tiles[holding.tile as usize];
+        holding.mass / tile.mass * tile.area
+    };
+    let area: f64 = relaxed.holdings.of(site).iter().filter(|holding| holding.mass > 0.0).map(area).sum();
+    libm::sqrt(area)
+}
+
 /// Whether any point stood too close.
 fn move_aside(
-    layout: &Layout,
-    relaxed: &Relaxed,
-    sides: Option<&Sides>,
+    cells: &Cells<'_>,
+    widths: &[f64],
     own: &mut [Option<Spot>],
     attempt: &Attempt,
     seed: u64,
 ) -> bool {
+    let Cells { layout, relaxed, sides, ref homes } = *cells;
     let mut at: Vec<DVec3> =
         relaxed.sites.iter().zip(&*own).map(|(s, o)| o.map_or(s.place.position, |o| o.place)).collect();
-    let between = |i: usize, j: usize| (relaxed.sites[i].distance + relaxed.sites[j].distance) * 0.5;
+    let between = |i: usize, j: usize| (widths[i] + widths[j]) * 0.5;
     let runs = Runs::new(&at);
     let within = |i: usize, sight: f64| {
         let mut near = Vec::new();
-        runs.within(at[i], sight * relaxed.sites[i].distance, |j| j != i, &mut near);
+        runs.within(at[i], sight * widths[i], |j| j != i, &mut near);
         near
     };
     let is_crowded = |i: usize| {
@@ -103,9 +114,8 @@ fn move_aside(
             if short(now.place) == 0.0 {
                 continue;
             }
-            let centroid = relaxed.cells[i].centroid();
             let cost =
-                |spot: &Spot| attempt.weight * short(spot.place) + spot.place.distance_squared(centroid);
+                |spot: &Spot| attempt.weight * short(spot.place) + spot.place.distance_squared(homes[i]);
             let mut best = (cost(&now), now);
             let stays = |spot: &&Spot| sides.is_none_or(|sides| sides.of(spot.face) == sides.of(now.face));
             for spot in spots[i].iter().filter(stays) {

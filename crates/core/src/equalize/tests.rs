@@ -185,7 +185,7 @@ fn equal_points_and_any_number_are_taken() {
 fn a_plate_keeps_its_points_apart() {
     // 2% of a distance of the points thick: centroids of cells on the two sides may fall together.
     let plate = mesh(&shapes::plate(12, 1e-3));
-    for seed in 1..4 {
+    for seed in 1..8 {
         let result = equalized(&plate, &baseline::random(&plate, 400, seed), 6);
         let ideal = (2.0 * plate.area() / (3.0_f64.sqrt() * 400.0)).sqrt();
         let places: Vec<DVec3> = result.points.iter().map(|p| plate.locate(p)).collect();
@@ -194,7 +194,7 @@ fn a_plate_keeps_its_points_apart() {
             others.map(|j| places[i].distance(places[j])).fold(f64::INFINITY, f64::min)
         };
         let least = (0..places.len()).map(nearest).fold(f64::INFINITY, f64::min);
-        assert!(least > 0.45 * ideal, "seed {seed}: {:.3}", least / ideal);
+        assert!(least > 0.5 * ideal, "seed {seed}: {:.3}", least / ideal);
     }
 }
 
@@ -237,18 +237,19 @@ fn places_for_views_serve_views_that_took_no_part() {
     let knot = mesh(&shapes::trefoil(96, 12, 0.3));
     let strips = vec![StripId(0); knot.face_count()];
     let (mut before, mut after) = (0.0, 0.0);
-    for seed in 1..=4 {
+    for seed in 1..=12 {
         let points = baseline::random(&knot, 80, seed);
         let run = |for_views| {
             let options = EqualizeOptions { for_views, ..EqualizeOptions::default() };
             equalize(&knot, &points, &strips, &Density::UNIFORM, &options, &Silent)
         };
-        let (plain, placed) = (run(None), run(Some(ForViews { stay: 0.2, ..ForViews::default() })));
+        let (plain, placed) = (run(None), run(Some(ForViews { stay: Some(0.2), ..ForViews::default() })));
         before += view_error(&knot, &plain.points);
         after += view_error(&knot, &placed.points);
         assert_eq!(placed.cells, plain.cells, "each point stays in its cell");
     }
-    assert!(after < 0.8 * before, "{after} after {before}");
+    // Before, they already face every way as the surface does and stand where there is room.
+    assert!(after < 0.9 * before, "{after} after {before}");
 }
 
 #[test]
@@ -276,9 +277,24 @@ fn places_serve_the_cameras_that_were_asked_for() {
         (sum / 40.0).sqrt()
     };
     let cameras = Cameras::Cone { toward, angle: 0.3, distance: None };
-    let placed = run(Some(ForViews { cameras, stay: 0.05, views: Some(256), ..ForViews::default() }));
+    let placed = run(Some(ForViews { cameras, stay: Some(0.05), views: Some(256), ..ForViews::default() }));
     let (before, after) = (error(&run(None)), error(&placed));
     assert!(after < 0.7 * before, "{after} after {before}");
+}
+
+/// Few points stand where all of them together do best, not each in the middle of its cell.
+#[test]
+fn few_points_have_little_energy() {
+    let knot = mesh(&shapes::trefoil(48, 8, 0.3));
+    // Next to the centroids they would have an eta of 0.76 and 0.83.
+    for (n, least) in [(40, 0.85), (120, 0.9)] {
+        let mut sum = 0.0;
+        for seed in 1..=4 {
+            let points = equalized(&knot, &baseline::random(&knot, n, seed), 5).points;
+            sum += measure::energy(&knot, &points, &measure::EnergyOptions::default(), &Silent).eta;
+        }
+        assert!(sum / 4.0 > least, "n {n}: {}", sum / 4.0);
+    }
 }
 
 /// As many points face every way as the share of the surface that does asks for: nearer than equal cells alone would have it.

@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::layout::Layout;
 use super::places::{Spot, spots};
 use super::relax::Relaxed;
+use super::settle::Cells;
 use crate::baseline::spherical_fibonacci;
 use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
@@ -45,9 +45,9 @@ pub enum Cameras {
 pub struct ForViews {
     /// From where the surface will be looked at. Default: from everywhere.
     pub cameras: Cameras,
-    /// What it costs a point to leave the centroid of its cell: more keeps points evener and serves views less.
-    /// Default: 0.4.
-    pub stay: f64,
+    /// What it costs a point to leave the middle of its cell: more keeps points evener and fits the views less closely.
+    /// Default: `None`, 0.5 for up to 1,500 points, and more where fewer views are made for more points.
+    pub stay: Option<f64>,
     /// Over how many views the error is made small: more serve unseen ones better, and the time is proportional.
     /// Default: `None`, 2,048 for 1,500 points and fewer for more points.
     pub views: Option<u32>,
@@ -60,30 +60,28 @@ pub struct ForViews {
 
 impl Default for ForViews {
     fn default() -> Self {
-        Self { cameras: Cameras::Around, stay: 0.4, views: None, places: None, seed: 0 }
+        Self { cameras: Cameras::Around, stay: None, views: None, places: None, seed: 0 }
     }
 }
 
 impl ForViews {
-    /// Views and places for sets of `count` points: what takes some ten seconds on a mesh of 100,000 faces.
-    fn effort(&self, count: usize) -> (u32, u32) {
-        let (views, places) = match count {
-            0..=1_500 => (2_048, 32),
-            1_501..=5_000 => (1_024, 16),
-            5_001..=30_000 => (512, 8),
-            _ => (192, 4),
+    /// Views, places and the cost of leaving home for sets of `count` points: what takes some ten seconds on a mesh of
+    /// 100,000 faces. The fewer views there are for the points, the less closely should they be fitted: others matter as well.
+    fn effort(&self, count: usize) -> (u32, u32, f64) {
+        let (views, places, stay) = match count {
+            0..=1_500 => (2_048, 32, 0.5),
+            1_501..=5_000 => (1_024, 16, 1.6),
+            5_001..=30_000 => (512, 8, 2.0),
+            _ => (192, 4, 6.0),
         };
-        (self.views.unwrap_or(views).max(1), self.places.unwrap_or(places).max(1))
+        let (views, places) = (self.views.unwrap_or(views), self.places.unwrap_or(places));
+        (views.max(1), places.max(1), self.stay.unwrap_or(stay))
     }
 
     /// What is wrong with it, if anything: the name of the option, its value and what it may be.
     pub(crate) fn fault(&self) -> Option<(&'static str, String, &'static str)> {
-        if !(self.stay.is_finite() && self.stay >= 0.0) {
-            return Some((
-                "cost of leaving a cell's centroid",
-                self.stay.to_string(),
-                "finite and from 0 up",
-            ));
+        if let Some(stay) = self.stay.filter(|stay| !(stay.is_finite() && *stay >= 0.0)) {
+            return Some(("cost of leaving a cell's middle", stay.to_string(), "finite and from 0 up"));
         }
         let Cameras::Cone { toward, angle, distance } = self.cameras else { return None };
         if !(toward.is_finite() && toward.length_squared() > 0.0) {
@@ -116,14 +114,13 @@ struct Choice {
 pub(super) fn choose(
     mesh: &SurfaceMesh,
     middle: DVec3,
-    layout: &Layout,
-    relaxed: &Relaxed,
+    cells: &Cells<'_>,
     own: &mut [Option<Spot>],
     options: &ForViews,
     progress: &dyn Progress,
 ) {
-    let (views, places) = options.effort(own.len());
-    let choices = choices(layout, relaxed, own, places, options);
+    let (views, places, stay) = options.effort(own.len());
+    let choices = choices(cells, own, places, stay, options.seed);
     let all: Vec<(FaceId, DVec3)> =
         choices.iter().flatten().map(|c| (c.spot.face, c.spot.place + middle)).collect();
     let caster = Caster::new(mesh);
@@ -148,27 +145,22 @@ pub(super) fn choose(
         return;
     }
     let rows: Vec<u64> = (0..all.len()).flat_map(|i| seen.iter().map(move |word| word[i])).collect();
-    let chosen = descend(&choices, &rows, words, cameras.len(), relaxed);
+    let chosen = descend(&choices, &rows, words, cameras.len(), cells.relaxed);
     for ((own, choices), k) in own.iter_mut().zip(&choices).zip(chosen) {
         *own = choices.get(k).map(|c| c.spot);
     }
 }
 
 /// For each site where it stands, then places of its cell; without any where there is no cell.
-fn choices(
-    layout: &Layout,
-    relaxed: &Relaxed,
-    own: &[Option<Spot>],
-    places: u32,
-    options: &ForViews,
-) -> Vec<Vec<Choice>> {
-    let spots = spots(layout, relaxed, |site| own[site].is_some(), places, options.seed);
+fn choices(cells: &Cells<'_>, own: &[Option<Spot>], places: u32, stay: f64, seed: u64) -> Vec<Vec<Choice>> {
+    let Cells { layout, relaxed, homes, .. } = cells;
+    let spots = spots(layout, relaxed, |site| own[site].is_some(), places, seed);
     parallel::map(own.len(), |site| {
         let Some(own) = own[site] else { return Vec::new() };
-        let (centroid, distance) = (relaxed.cells[site].centroid(), relaxed.sites[site].distance);
+        let distance = relaxed.sites[site].distance;
         let choice = |spot: &Spot| {
-            let away = spot.place.distance_squared(centroid) / (distance * distance);
-            Choice { spot: *spot, cost: options.stay * away }
+            let away = spot.place.distance_squared(homes[site]) / (distance * distance);
+            Choice { spot: *spot, cost: stay * away }
         };
         std::iter::once(&own).chain(&spots[site]).map(choice).collect()
     })

@@ -94,6 +94,7 @@ pub(super) fn read_within(
                 let added = data.plain(|bytes, encoding| {
                     match plain::add_polygons(&mut soup, bytes, element, encoding, limits)? {
                         Ok(length) => Some((Ok(()), length)),
+                        // Nothing is read any more.
                         Err(error) => Some((Err(error), 0)),
                     }
                 });

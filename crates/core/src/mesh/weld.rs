@@ -8,7 +8,7 @@ use crate::buckets::Buckets;
 use crate::ids::VertexId;
 use crate::parallel;
 
-/// Each vertex at the position of an earlier one, with the first one there. Linear time.
+/// Each vertex at the position of an earlier one, with the first one there. Linear time unless hashes collide.
 pub(super) fn repeated(positions: &[DVec3]) -> Vec<(VertexId, VertexId)> {
     // Adding 0.0 turns -0.0 into 0.0.
     let bits_of = |v: u32| positions[v as usize].to_array().map(|x| (x + 0.0).to_bits());

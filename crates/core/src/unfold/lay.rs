@@ -155,7 +155,7 @@ fn turned([a, b, c]: [u32; 3], corner: usize) -> [u32; 3] {
 const TURNS: usize = 12;
 
 /// So many turns are tried at a time: as many as the registers hold.
-const LANES: usize = 4;
+const GROUP: usize = 4;
 
 /// So many vertices stay in the cache.
 const BLOCK: usize = 1 << 10;
@@ -163,14 +163,14 @@ const BLOCK: usize = 1 << 10;
 /// The boxes around turned vertices, one a turn.
 #[derive(Clone, Copy)]
 struct Boxes {
-    low: [[f64; LANES]; 2],
-    high: [[f64; LANES]; 2],
+    low: [[f64; GROUP]; 2],
+    high: [[f64; GROUP]; 2],
 }
 
 impl Boxes {
-    const NONE: Self = Self { low: [[f64::INFINITY; LANES]; 2], high: [[f64::NEG_INFINITY; LANES]; 2] };
+    const NONE: Self = Self { low: [[f64::INFINITY; GROUP]; 2], high: [[f64::NEG_INFINITY; GROUP]; 2] };
 
-    fn around(vertices: &[DVec2], turns: &[DMat2; LANES]) -> Self {
+    fn around(vertices: &[DVec2], turns: &[DMat2; GROUP]) -> Self {
         let mut boxes = Self::NONE;
         for &v in vertices {
             let turned = turns.map(|turn| turn * v);
@@ -182,9 +182,9 @@ impl Boxes {
 
     /// Grows so that each holds another one.
     #[inline]
-    fn hold(&mut self, low: [[f64; LANES]; 2], high: [[f64; LANES]; 2]) {
+    fn hold(&mut self, low: [[f64; GROUP]; 2], high: [[f64; GROUP]; 2]) {
         for axis in 0..2 {
-            for lane in 0..LANES {
+            for lane in 0..GROUP {
                 let (least, greatest) = (&mut self.low[axis][lane], &mut self.high[axis][lane]);
                 *least = if *least < low[axis][lane] { *least } else { low[axis][lane] };
                 *greatest = if *greatest > high[axis][lane] { *greatest } else { high[axis][lane] };
@@ -193,7 +193,7 @@ impl Boxes {
     }
 
     fn of(&self, lane: usize) -> (DVec2, DVec2) {
-        let corner = |of: &[[f64; LANES]; 2]| DVec2::new(of[0][lane], of[1][lane]);
+        let corner = |of: &[[f64; GROUP]; 2]| DVec2::new(of[0][lane], of[1][lane]);
         (corner(&self.low), corner(&self.high))
     }
 }
@@ -201,9 +201,9 @@ impl Boxes {
 /// Turns the strip so that the square around it is small and moves it so that the box around it starts at (0, 0). Gives
 /// the upper right corner of that box.
 pub(super) fn settle(vertices: &mut [DVec2]) -> DVec2 {
-    let turns: [[DMat2; LANES]; TURNS / LANES] = std::array::from_fn(|group| {
+    let turns: [[DMat2; GROUP]; TURNS / GROUP] = std::array::from_fn(|group| {
         std::array::from_fn(|lane| {
-            let turn = (LANES * group + lane) as f64;
+            let turn = (GROUP * group + lane) as f64;
             let (sin, cos) = libm::sincos(turn * std::f64::consts::FRAC_PI_2 / TURNS as f64);
             DMat2::from_cols(DVec2::new(cos, sin), DVec2::new(-sin, cos))
         })
@@ -211,7 +211,7 @@ pub(super) fn settle(vertices: &mut [DVec2]) -> DVec2 {
     let blocks = parallel::map_chunks(vertices.len(), BLOCK, |block| {
         turns.each_ref().map(|turns| Boxes::around(&vertices[block.clone()], turns))
     });
-    let mut boxes = [Boxes::NONE; TURNS / LANES];
+    let mut boxes = [Boxes::NONE; TURNS / GROUP];
     for block in blocks {
         for (all, part) in boxes.iter_mut().zip(block) {
             all.hold(part.low, part.high);
@@ -219,7 +219,7 @@ pub(super) fn settle(vertices: &mut [DVec2]) -> DVec2 {
     }
     let mut best = (f64::INFINITY, DMat2::IDENTITY, DVec2::ZERO, DVec2::ZERO);
     for (turn, (low, high)) in
-        turns.into_iter().flatten().zip(boxes.iter().flat_map(|boxes| (0..LANES).map(|lane| boxes.of(lane))))
+        turns.into_iter().flatten().zip(boxes.iter().flat_map(|boxes| (0..GROUP).map(|lane| boxes.of(lane))))
     {
         let extent = high - low;
         // A turn must pay: for a plane figure drawn along the axes, staying put keeps its coordinates exact.
