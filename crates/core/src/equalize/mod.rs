@@ -106,7 +106,7 @@ const KEEP: f64 = 0.4;
 /// Moves points along the surface until each stands for the same mass: area times density. `strip_of_face` says which
 /// segment each face belongs to. Hears cancellation between rounds.
 ///
-/// Cost: O((F + n) (rounds + log n)).
+/// Cost: O((F + n) (rounds + log n)), and n^2 besides for up to 1,000 points.
 pub fn equalize(
     mesh: &SurfaceMesh,
     points: &[SurfacePoint],
