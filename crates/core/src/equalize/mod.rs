@@ -2,8 +2,9 @@
 //!
 //! Coarse to fine: whole numbers of points for components (`patches`), a hierarchy of balanced splits down to a region for
 //! each point (`balance`), then relaxation of power cells on the surface (`relax`); at last the side of a crease on which a
-//! point stands, so that planes and segments have their shares (`sides`), its place there if points are few (`energy`), and the face of its cell, so that as many points
-//! face every way as the surface asks for (`facing`).
+//! point stands, so that planes and segments have their shares (`sides`), its place there if points are few (`energy`), and
+//! the face of its cell, so that as many points face every way as the surface asks for (`facing`). docs/METHOD.md explains
+//! each.
 
 mod balance;
 mod capacity;
