@@ -64,8 +64,8 @@ pub(super) trait Owners {
     fn begin(&mut self, contenders: &[Power]);
     /// A tile has one owner.
     fn whole(&mut self, site: usize, tile: usize, mass: f64);
-    /// Part of a tile; a polygon if those are wanted.
-    fn part(&mut self, site: usize, tile: usize, mass: f64, polygon: &[clip::Corner]);
+    /// Part of a tile, with its centroid along the tile's two sides; a polygon if those are wanted.
+    fn part(&mut self, site: usize, tile: usize, mass: f64, centroid: [f64; 2], polygon: &[clip::Corner]);
     /// Mass times mean place of something that a site owns.
     fn moment(&mut self, site: usize, moment: Place);
     /// Two sites share a border.
@@ -235,7 +235,7 @@ impl<'a> Walk<'a> {
         let corners = [self.layout.places.at(a), self.layout.places.at(b), self.layout.places.at(c)];
         // What a site owns: its share, that times the mean barycentric coordinates, and its polygon.
         let give = |owners: &mut O, site, share: f64, weights: [f64; 3], polygon: &[clip::Corner]| {
-            owners.part(site, index, tile.mass * share, polygon);
+            owners.part(site, index, tile.mass * share, [weights[1] / share, weights[2] / share], polygon);
             let [a, b, c] = [weights[0] * tile.mass, weights[1] * tile.mass, weights[2] * tile.mass];
             owners.moment(
                 site,

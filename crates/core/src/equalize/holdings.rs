@@ -1,5 +1,7 @@
 //! What each site owns, tile by tile, when the cells are settled.
 
+use glam::DVec3;
+
 use super::clip;
 use super::diagram::{Owners, Power, walk};
 use super::layout::{Layout, Place};
@@ -10,7 +12,25 @@ use super::owners::Cell;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Holding {
     pub(super) tile: u32,
+    /// Where the centroid of that mass lies along the tile's two sides, in shares of [`FINEST`].
+    centroid: [u16; 2],
     pub(super) mass: f64,
+}
+
+/// As fine as small numbers are: there are as many holdings as tiles.
+const FINEST: f64 = u16::MAX as f64;
+
+impl Holding {
+    fn new(tile: usize, centroid: [f64; 2], mass: f64) -> Self {
+        Self { tile: tile as u32, centroid: centroid.map(|x| (x * FINEST + 0.5) as u16), mass }
+    }
+
+    /// The centroid of what is owned.
+    pub(super) fn centroid(&self, layout: &Layout) -> DVec3 {
+        let [a, b, c] = layout.corners(&layout.tiles[self.tile as usize]);
+        let [u, v] = self.centroid.map(|x| f64::from(x) / FINEST);
+        a + (b - a) * u + (c - a) * v
+    }
 }
 
 /// What all sites own.
@@ -73,11 +93,11 @@ impl Owners for Lists {
     }
 
     fn whole(&mut self, site: usize, tile: usize, mass: f64) {
-        self.all.push((self.sites[site], Holding { tile: tile as u32, mass }));
+        self.part(site, tile, mass, [1.0 / 3.0; 2], &[]);
     }
 
-    fn part(&mut self, site: usize, tile: usize, mass: f64, _: &[clip::Corner]) {
-        self.whole(site, tile, mass);
+    fn part(&mut self, site: usize, tile: usize, mass: f64, centroid: [f64; 2], _: &[clip::Corner]) {
+        self.all.push((self.sites[site], Holding::new(tile, centroid, mass)));
     }
 
     fn moment(&mut self, site: usize, moment: Place) {

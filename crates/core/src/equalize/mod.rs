@@ -2,7 +2,7 @@
 //!
 //! Coarse to fine: whole numbers of points for components (`patches`), a hierarchy of balanced splits down to a region for
 //! each point (`balance`), then relaxation of power cells on the surface (`relax`); at last the side of a crease on which a
-//! point stands, so that planes and segments have their shares (`sides`), its place there if points are few (`energy`), and
+//! point stands, so that planes and segments have their shares (`sides`), its place there (`energy`), and
 //! the face of its cell, so that as many points face every way as the surface asks for (`facing`). docs/METHOD.md explains
 //! each.
 
@@ -12,6 +12,7 @@ mod clip;
 mod diagram;
 mod energy;
 mod facing;
+mod field;
 mod harmonics;
 mod holdings;
 mod laplacian;
@@ -21,9 +22,11 @@ mod normals;
 mod owners;
 mod patches;
 mod places;
+mod quadrature;
 mod relax;
 mod settle;
 mod sides;
+mod sources;
 mod spacing;
 mod tiles;
 mod views;
@@ -107,7 +110,7 @@ const KEEP: f64 = 0.4;
 /// Moves points along the surface until each stands for the same mass: area times density. `strip_of_face` says which
 /// segment each face belongs to. Hears cancellation between rounds.
 ///
-/// Cost: O((F + n) (rounds + log n)), and n^2 besides for up to 1,000 points.
+/// Cost: O((F + n) (rounds + log n)).
 pub fn equalize(
     mesh: &SurfaceMesh,
     points: &[SurfacePoint],

@@ -84,7 +84,7 @@ impl Owners for Sums {
         self.cells[site].mass += mass;
     }
 
-    fn part(&mut self, site: usize, _: usize, mass: f64, _: &[clip::Corner]) {
+    fn part(&mut self, site: usize, _: usize, mass: f64, _: [f64; 2], _: &[clip::Corner]) {
         self.cells[site].mass += mass;
     }
 
@@ -149,7 +149,7 @@ impl Owners for Cut {
         self.pieces.push(Piece { site: self.sites[site], tile: tile as u32, mass, polygon });
     }
 
-    fn part(&mut self, site: usize, tile: usize, mass: f64, polygon: &[clip::Corner]) {
+    fn part(&mut self, site: usize, tile: usize, mass: f64, _: [f64; 2], polygon: &[clip::Corner]) {
         let polygon = polygon.iter().map(|c| DVec2::new(c.u, c.v)).collect();
         self.pieces.push(Piece { site: self.sites[site], tile: tile as u32, mass, polygon });
     }
