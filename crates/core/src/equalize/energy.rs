@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use super::field::Field;
+use super::field::{Field, Sight};
 use super::layout::{Ground, Layout};
 use super::owners::Cell;
 use super::places::Spot;
@@ -42,13 +42,16 @@ const SIDE_BY_SIDE: usize = 500_000;
 struct Care {
     /// So many times each point moves.
     sweeps: usize,
-    /// See [`Field::new`].
-    far: f64,
+    sight: Sight,
 }
 
 impl Care {
     fn of(count: usize) -> Self {
-        if count <= FEW { Self { sweeps: 4, far: 1.5 } } else { Self { sweeps: 2, far: 0.5 } }
+        if count <= FEW {
+            Self { sweeps: 4, sight: Sight { far: 2.0, near: 6.0 } }
+        } else {
+            Self { sweeps: 2, sight: Sight { far: 0.5, near: 3.0 } }
+        }
     }
 }
 
@@ -70,7 +73,7 @@ pub(super) fn homes(
     let distance = |i: usize| relaxed.sites[standing[i].0].distance;
     let unit = standing.len() as f64 / (0..standing.len()).map(distance).sum::<f64>();
     let care = Care::of(standing.len());
-    let mut field = field(layout, relaxed, &standing, unit, care.far);
+    let mut field = field(layout, relaxed, &standing, unit, care.sight);
     let grounds = |i: usize| {
         let (site, spot) = &standing[i];
         let tiles = relaxed.holdings.of(*site).iter().map(|holding| layout.ground(holding.tile as usize));
@@ -89,7 +92,7 @@ pub(super) fn homes(
         Some((spot.place * unit, spot))
     };
     let leaves = field.leaves();
-    let together = ((leaves as f64).sqrt() * TOGETHER).ceil() as usize;
+    let together = (((leaves as f64).sqrt() * TOGETHER).ceil() as usize).max(1);
     let turns = leaves.div_ceil(together);
     for _ in 0..care.sweeps {
         for turn in 0..turns {
@@ -109,8 +112,8 @@ pub(super) fn homes(
 }
 
 /// Of the cells of those that stand.
-fn field(layout: &Layout, relaxed: &Relaxed, standing: &[(usize, Spot)], unit: f64, far: f64) -> Field {
+fn field(layout: &Layout, relaxed: &Relaxed, standing: &[(usize, Spot)], unit: f64, sight: Sight) -> Field {
     let sites: Vec<u32> = standing.iter().map(|(site, _)| *site as u32).collect();
     let points: Vec<DVec3> = standing.iter().map(|(_, spot)| spot.place * unit).collect();
-    Field::new(quadratures(layout, relaxed, &sites, unit), &points, far)
+    Field::new(quadratures(layout, relaxed, &sites, unit), &points, sight)
 }

@@ -17,8 +17,14 @@ pub(super) const LEAF: usize = 8;
 /// Groups that make one of the next level.
 const BRANCHES: usize = 2;
 
-/// From within this many times its own width a cell is seen as what it consists of.
-const NEARBY: f64 = 3.0;
+/// How closely is looked.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sight {
+    /// A group is seen as a whole if the gap between it and who looks is wider than this many times its radius.
+    pub(super) far: f64,
+    /// From within this many times its own width a cell is seen as what it consists of.
+    pub(super) near: f64,
+}
 
 /// A cell with the point that stands in it.
 struct Body {
@@ -41,7 +47,6 @@ struct Group {
 
 /// All cells and points. Lengths are in one unit, in which cells are about as wide as 1.
 pub(super) struct Field {
-    /// How wide a gap makes a group one, in its radii.
     far: f64,
     bodies: Vec<Body>,
     quadratures: Vec<Quadrature>,
@@ -50,13 +55,12 @@ pub(super) struct Field {
 }
 
 impl Field {
-    /// Of cells by their quadratures, and their points. A group is seen as a whole if the gap between it and who looks is
-    /// wider than `far` times its radius.
-    pub(super) fn new(quadratures: Vec<Quadrature>, points: &[DVec3], far: f64) -> Self {
+    /// Of cells by their quadratures, and their points.
+    pub(super) fn new(quadratures: Vec<Quadrature>, points: &[DVec3], sight: Sight) -> Self {
         let body = |(quadrature, &point): (&Quadrature, &DVec3)| {
             let covariance = quadrature.covariance();
             let width = trace(&covariance).sqrt();
-            let moments = Moments::of_cell(&covariance, NEARBY * width);
+            let moments = Moments::of_cell(&covariance, sight.near * width);
             Body { centroid: quadrature.centroid, covariance, moments, width, point }
         };
         let bodies: Vec<Body> = quadratures.iter().zip(points).map(body).collect();
@@ -69,7 +73,7 @@ impl Field {
             }
             size *= BRANCHES;
         }
-        Self { far, bodies, quadratures, levels }
+        Self { far: sight.far, bodies, quadratures, levels }
     }
 
     pub(super) fn point(&self, i: usize) -> DVec3 {
@@ -239,7 +243,7 @@ mod tests {
         let points: Vec<DVec3> = cells.iter().map(|places| centroid(places) + place(0.5)).collect();
         let quadratures =
             cells.iter().map(|places| Quadrature::of_places(centroid(places), places)).collect();
-        let field = Field::new(quadratures, &points, 1.0);
+        let field = Field::new(quadratures, &points, Sight { far: 1.0, near: 3.0 });
         assert!(field.levels.len() > 2);
         for leaf in (0..field.leaves()).step_by(7) {
             let mut surroundings = Surroundings::of(&field, leaf);
@@ -268,7 +272,7 @@ mod tests {
             Field::new(
                 places.iter().map(|&p| Quadrature::of_places(p, &[p, p + DVec3::Y])).collect(),
                 points,
-                1.0,
+                Sight { far: 1.0, near: 3.0 },
             )
         };
         let mut points = places.clone();
