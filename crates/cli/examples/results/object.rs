@@ -224,9 +224,22 @@ fn pictures(report: &mut Report, mesh: &SurfaceMesh, run: &Run, stem: &str) -> O
 /// Up to this many points there are [`SEEDS`] sets, and one judge for all of them, as `compare` has one for a run.
 const FEW: usize = 1_000;
 
-/// The table of ways by measures: means over the seeds.
-pub(crate) fn measures(report: &mut Report, mesh: &SurfaceMesh, ways: &[Way], counts: &[usize]) -> Outcome {
-    let mut rows = Vec::new();
+/// Means over the seeds of one way at one number of points.
+pub(crate) struct Means {
+    pub(crate) way: Way,
+    pub(crate) count: usize,
+    /// As in [`MEASURES`].
+    pub(crate) values: Vec<f64>,
+}
+
+/// The table of ways by measures, which it gives back.
+pub(crate) fn measures(
+    report: &mut Report,
+    mesh: &SurfaceMesh,
+    ways: &[Way],
+    counts: &[usize],
+) -> Outcome<Vec<Means>> {
+    let (mut rows, mut means) = (Vec::new(), Vec::new());
     let (few, many): (Vec<usize>, Vec<usize>) = counts.iter().partition(|&&count| count <= FEW);
     for counts in std::iter::once(&few[..]).chain(many.chunks(1)) {
         let Some(&most) = counts.iter().max() else { continue };
@@ -240,14 +253,13 @@ pub(crate) fn measures(report: &mut Report, mesh: &SurfaceMesh, ways: &[Way], co
                     seconds += took / seeds as f64;
                     sets.push(judge.quality(&points, &Silent));
                 }
+                let summaries =
+                    MEASURES.map(|m| Summary::of(&sets.iter().map(m.value).collect::<Vec<f64>>()));
                 let mut row = vec![way.name().to_owned(), count.to_string()];
-                row.extend(
-                    MEASURES
-                        .iter()
-                        .map(|m| cell(Summary::of(&sets.iter().map(m.value).collect::<Vec<f64>>()))),
-                );
+                row.extend(summaries.map(cell));
                 row.push(format!("{seconds:.2}"));
                 rows.push(row);
+                means.push(Means { way, count, values: summaries.map(|summary| summary.mean).to_vec() });
             }
         }
     }
@@ -256,5 +268,5 @@ pub(crate) fn measures(report: &mut Report, mesh: &SurfaceMesh, ways: &[Way], co
     head.extend(names.iter().map(String::as_str));
     head.push("seconds to place");
     report.table(&head, &rows);
-    Ok(())
+    Ok(means)
 }

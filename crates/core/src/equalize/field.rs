@@ -17,10 +17,15 @@ pub(super) const LEAF: usize = 8;
 /// Groups that make one of the next level.
 const BRANCHES: usize = 2;
 
+/// Wider leaves, as those that belong to parts far apart, are looked at from each of their points: single precision would
+/// not tell from one place where all of them stand.
+const WIDE: f64 = 1e3;
+
 /// How closely is looked.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sight {
-    /// A group is seen as a whole if the gap between it and who looks is wider than this many times its radius.
+    /// A group is seen as a whole if it is farther away than this many times its radius, and its radius or that of the leaf
+    /// that looks, whichever is larger.
     pub(super) far: f64,
     /// From within this many times its own width a cell is seen as what it consists of.
     pub(super) near: f64,
@@ -45,12 +50,12 @@ struct Group {
     quadrupole: DMat3,
 }
 
-/// All cells and points. Lengths are in one unit, in which cells are about as wide as 1.
+/// All cells and points. Lengths are in one unit, in which the points are 1 apart in the mean.
 pub(super) struct Field {
     far: f64,
     bodies: Vec<Body>,
     quadratures: Vec<Quadrature>,
-    /// Groups of [`LEAF`] bodies; then of groups of as many, until there is one.
+    /// Groups of [`LEAF`] bodies; then of [`BRANCHES`] groups each, until there is one.
     levels: Vec<Vec<Group>>,
 }
 
@@ -108,10 +113,15 @@ impl Field {
         step: impl Fn(usize, DVec3, DVec3) -> Option<(DVec3, T)>,
     ) -> Vec<(usize, DVec3, T)> {
         let own = self.of_leaf(leaf);
-        let surroundings = &mut Surroundings::of(self, leaf);
-        let mut moved = Vec::with_capacity(LEAF);
+        let group = &self.levels[0][leaf];
+        let mut surroundings = Surroundings::of(self, leaf, group.centre);
+        let mut moved: Vec<(usize, DVec3, T)> = Vec::with_capacity(LEAF);
         for i in own.clone() {
             let from = self.bodies[i].point;
+            if group.radius > WIDE {
+                surroundings = Surroundings::of(self, leaf, from);
+                moved.iter().for_each(|(i, to, _)| surroundings.put(i - own.start, *to));
+            }
             if let Some((to, what)) = step(i, from, surroundings.slope(from)) {
                 surroundings.put(i - own.start, to);
                 moved.push((i, to, what));
@@ -136,10 +146,10 @@ struct Surroundings<'a> {
 }
 
 impl<'a> Surroundings<'a> {
-    fn of(field: &'a Field, leaf: usize) -> Self {
+    fn of(field: &'a Field, leaf: usize, origin: DVec3) -> Self {
         let mut it = Self {
             field,
-            origin: field.levels[0][leaf].centre,
+            origin,
             groups: Sources::default(),
             cells: Sources::default(),
             points: Sources::default(),
@@ -246,7 +256,7 @@ mod tests {
         let field = Field::new(quadratures, &points, Sight { far: 1.0, near: 3.0 });
         assert!(field.levels.len() > 2);
         for leaf in (0..field.leaves()).step_by(7) {
-            let mut surroundings = Surroundings::of(&field, leaf);
+            let mut surroundings = Surroundings::of(&field, leaf, field.levels[0][leaf].centre);
             // Enough is seen as a whole.
             assert!(surroundings.bodies.len() < 350, "{}", surroundings.bodies.len());
             let own = field.of_leaf(leaf).start;
@@ -284,8 +294,36 @@ mod tests {
         let anew = field_of(&points);
         for leaf in 0..field.leaves() {
             let from = points[field.of_leaf(leaf).start];
-            let [a, b] = [&field, &anew].map(|field| Surroundings::of(field, leaf).slope(from));
+            let [a, b] = [&field, &anew].map(|field| Surroundings::of(field, leaf, from).slope(from));
             assert!(a.distance(b) < 1e-4, "leaf {leaf}: {a} {b}");
+        }
+    }
+
+    /// Two parts far apart, with points of both in the same leaf: each part is as if it were alone.
+    #[test]
+    fn parts_far_apart_do_not_blur_each_other() {
+        let mut random = Random::new(5, 1);
+        let places: Vec<DVec3> =
+            (0..12).map(|i| DVec3::new(f64::from(i % 4), f64::from(i / 4), random.unit())).collect();
+        let field_of = |places: &[DVec3]| {
+            let quadrature = |&p: &DVec3| Quadrature::of_places(p, &[p - DVec3::X * 0.4, p + DVec3::X * 0.4]);
+            let points: Vec<DVec3> = places.iter().map(|p| p + DVec3::Y * 0.2).collect();
+            let sight = Sight { far: 1.0, near: 3.0 };
+            Field::new(places.iter().map(quadrature).collect(), &points, sight)
+        };
+        let heard = |field: &Field| {
+            let mut slopes = Vec::new();
+            for leaf in 0..field.leaves() {
+                let slope_at = |i: usize, _, slope: DVec3| Some((field.point(i), slope));
+                slopes.extend(field.moves(leaf, slope_at).into_iter().map(|(_, _, slope)| slope));
+            }
+            slopes
+        };
+        let alone = heard(&field_of(&places));
+        let far = places.iter().map(|p| p + DVec3::X * 3e7);
+        let both: Vec<DVec3> = places.iter().copied().chain(far).collect();
+        for (i, slope) in heard(&field_of(&both)).into_iter().enumerate() {
+            assert!(slope.distance(alone[i % 12]) < 1e-3, "{i}: {slope} {}", alone[i % 12]);
         }
     }
 }

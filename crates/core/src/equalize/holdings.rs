@@ -21,6 +21,7 @@ pub(super) struct Holding {
 const FINEST: f64 = u16::MAX as f64;
 
 impl Holding {
+    /// Rounding can put the centroid of next to nothing outside the tile; it is taken back to its border.
     fn new(tile: usize, centroid: [f64; 2], mass: f64) -> Self {
         Self { tile: tile as u32, centroid: centroid.map(|x| (x * FINEST + 0.5) as u16), mass }
     }

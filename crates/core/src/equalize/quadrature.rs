@@ -8,16 +8,17 @@ use super::field::{outer, trace};
 use super::holdings::Holding;
 use super::layout::{Layout, Place};
 use super::relax::Relaxed;
+use super::sources::LANES;
 use crate::parallel;
 
-/// At most so many places for a cell.
-const PLACES: usize = 32;
+/// At most so many places for a cell; a multiple of the lanes.
+const ATOMS: usize = 4 * LANES;
 
 /// Cells that have more than this share of their mass on one tile are cut finer than tiles.
 const COARSE: f64 = 0.2;
 
 /// Into pieces of at most this share.
-const SHARE: f64 = 2.0 / PLACES as f64;
+const SHARE: f64 = 2.0 / ATOMS as f64;
 
 /// A place that stands for a cell is as wide as this share of the cell.
 const GRAIN: f64 = 0.25;
@@ -26,8 +27,8 @@ const GRAIN: f64 = 0.25;
 pub(super) struct Quadrature {
     pub(super) centroid: DVec3,
     /// From the centroid, coordinate by coordinate.
-    away: [[f32; PLACES]; 3],
-    weights: [f32; PLACES],
+    away: [[f32; ATOMS]; 3],
+    weights: [f32; ATOMS],
     /// The square of how wide each place is.
     grain: f32,
 }
@@ -61,7 +62,7 @@ impl Quadrature {
         // Rounded, and some of many: off by a little.
         let mean = atoms.iter().map(|atom| atom.place * atom.mass).sum::<DVec3>() / mass;
         let mut it =
-            Self { centroid: centroid * unit, away: [[0.0; PLACES]; 3], weights: [0.0; PLACES], grain: 0.0 };
+            Self { centroid: centroid * unit, away: [[0.0; ATOMS]; 3], weights: [0.0; ATOMS], grain: 0.0 };
         for (k, atom) in atoms.iter().enumerate() {
             let away = (atom.place - mean) * unit;
             (0..3).for_each(|axis| it.away[axis][k] = away[axis] as f32);
@@ -84,17 +85,16 @@ impl Quadrature {
             let away = DVec3::from_array([0, 1, 2].map(|axis| f64::from(self.away[axis][k])));
             outer(away) * f64::from(self.weights[k])
         };
-        (0..PLACES).map(of).fold(DMat3::ZERO, |sum, one| sum + one)
+        (0..ATOMS).map(of).fold(DMat3::ZERO, |sum, one| sum + one)
     }
 
     /// The slope of the mean distance to the cell.
     pub(super) fn slope(&self, from: DVec3) -> DVec3 {
-        const LANES: usize = 8;
         let from = (from - self.centroid).as_vec3();
         let [ax, ay, az] = &self.away;
         let mut sum = [[0.0_f32; LANES]; 3];
         let [right, up, out] = &mut sum;
-        for start in (0..PLACES).step_by(LANES) {
+        for start in (0..ATOMS).step_by(LANES) {
             for lane in 0..LANES {
                 let k = start + lane;
                 let (x, y, z) = (from.x - ax[k], from.y - ay[k], from.z - az[k]);
@@ -108,16 +108,16 @@ impl Quadrature {
     }
 }
 
-/// Of more than [`PLACES`] atoms as many, evenly by mass; all of fewer.
+/// Of more than [`ATOMS`] atoms as many, evenly by mass; all of fewer.
 fn evenly(atoms: impl Iterator<Item = Atom> + Clone) -> Vec<Atom> {
-    if atoms.clone().nth(PLACES).is_none() {
+    if atoms.clone().nth(ATOMS).is_none() {
         return atoms.collect();
     }
-    let mass = atoms.clone().map(|atom| atom.mass).sum::<f64>() / PLACES as f64;
-    let (mut passed, mut chosen) = (0.0, Vec::with_capacity(PLACES));
+    let mass = atoms.clone().map(|atom| atom.mass).sum::<f64>() / ATOMS as f64;
+    let (mut passed, mut chosen) = (0.0, Vec::with_capacity(ATOMS));
     for atom in atoms {
         passed += atom.mass;
-        while passed > (chosen.len() as f64 + 0.5) * mass && chosen.len() < PLACES {
+        while passed > (chosen.len() as f64 + 0.5) * mass && chosen.len() < ATOMS {
             chosen.push(Atom { place: atom.place, mass });
         }
     }
@@ -155,6 +155,11 @@ impl Coarse {
         let end = self.0.partition_point(|(other, _)| *other <= site);
         &self.0[start..end]
     }
+}
+
+/// How much mass an atom of a piece may have. Of what rounding leaves of a cell nothing is a small share.
+fn most(of_cell: f64, piece: f64) -> f64 {
+    (SHARE * of_cell).max(piece / ATOMS as f64)
 }
 
 /// Hears what sites own, cut into atoms.
@@ -199,7 +204,7 @@ impl Owners for Cuts<'_> {
         let site = self.sites[site];
         let of_cell = self.masses[site as usize];
         if of_cell > 0.0 {
-            self.add(site, self.layout.corners(&self.layout.tiles[tile]), mass, SHARE * of_cell);
+            self.add(site, self.layout.corners(&self.layout.tiles[tile]), mass, most(of_cell, mass));
         }
     }
 
@@ -218,7 +223,7 @@ impl Owners for Cuts<'_> {
         for pair in polygon[1..].windows(2) {
             let share = mass * (doubled(pair) / all);
             if share > 0.0 {
-                self.add(site, [at(&polygon[0]), at(&pair[0]), at(&pair[1])], share, SHARE * of_cell);
+                self.add(site, [at(&polygon[0]), at(&pair[0]), at(&pair[1])], share, most(of_cell, mass));
             }
         }
     }
@@ -239,11 +244,11 @@ mod tests {
     fn atoms_are_chosen_evenly() {
         let atom = |k: usize| Atom { place: DVec3::X * k as f64, mass: if k < 100 { 1.0 } else { 3.0 } };
         let chosen = evenly((0..200).map(atom));
-        assert_eq!(chosen.len(), PLACES);
+        assert_eq!(chosen.len(), ATOMS);
         let mass: f64 = chosen.iter().map(|atom| atom.mass).sum();
         assert!((mass - 400.0).abs() < 1e-9, "{mass}");
         let light = chosen.iter().filter(|atom| atom.place.x < 100.0).count();
-        assert_eq!(light, PLACES / 4);
-        assert_eq!(evenly((0..PLACES).map(atom)).len(), PLACES);
+        assert_eq!(light, ATOMS / 4);
+        assert_eq!(evenly((0..ATOMS).map(atom)).len(), ATOMS);
     }
 }

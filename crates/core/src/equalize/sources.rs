@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 /// So many are looked at side by side.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 type Lanes = [f32; LANES];
 
@@ -15,22 +15,22 @@ pub(super) struct Moments {
     /// xx, yy, zz, xy, xz, yz.
     quadrupole: [f32; 6],
     /// Nearer than the root of this it is not seen as a whole.
-    near: f32,
+    near_squared: f32,
 }
 
 impl Moments {
     /// A mass of 1 in one place.
     pub(super) const POINT: Self =
-        Self { monopole: 1.0, dipole: Vec3::ZERO, quadrupole: [0.0; 6], near: 0.0 };
+        Self { monopole: 1.0, dipole: Vec3::ZERO, quadrupole: [0.0; 6], near_squared: 0.0 };
 
     /// A cell of mass 1, about its centroid.
     pub(super) fn of_cell(covariance: &DMat3, near: f64) -> Self {
-        Self { near: (near * near) as f32, quadrupole: distinct(covariance), ..Self::POINT }
+        Self { near_squared: (near * near) as f32, quadrupole: distinct(covariance), ..Self::POINT }
     }
 
     /// What is left of as much mass as is taken away.
     pub(super) fn of_group(dipole: DVec3, quadrupole: &DMat3) -> Self {
-        Self { monopole: 0.0, dipole: dipole.as_vec3(), quadrupole: distinct(quadrupole), near: 0.0 }
+        Self { monopole: 0.0, dipole: dipole.as_vec3(), quadrupole: distinct(quadrupole), near_squared: 0.0 }
     }
 }
 
@@ -46,19 +46,19 @@ struct Pack {
     dipole: [Lanes; 3],
     /// xx, yy, zz, xy, xz, yz.
     quadrupole: [Lanes; 6],
-    near: Lanes,
+    near_squared: Lanes,
 }
 
-/// Far from everything, without mass.
+/// Without mass, and at no place where anything stands.
 const NONE: Pack = Pack {
     centre: [[1e9; LANES]; 3],
     monopole: [0.0; LANES],
     dipole: [[0.0; LANES]; 3],
     quadrupole: [[0.0; LANES]; 6],
-    near: [0.0; LANES],
+    near_squared: [0.0; LANES],
 };
 
-/// Smaller squares of distances are none.
+/// Added to squares of distances, so that a point is in no direction from itself; the unit is about one distance of the points.
 const LEAST: f32 = 1e-30;
 
 #[derive(Default)]
@@ -109,7 +109,7 @@ impl Sources {
             pack.quadrupole[k][lane] = moments.quadrupole[k];
         }
         pack.monopole[lane] = moments.monopole;
-        pack.near[lane] = moments.near;
+        pack.near_squared[lane] = moments.near_squared;
     }
 
     /// Moves a source.
@@ -151,7 +151,7 @@ impl Pack {
             monopole,
             dipole: [dx, dy, dz],
             quadrupole: [xx, yy, zz, xy, xz, yz],
-            near,
+            near_squared,
         } = self;
         let [right, up, out] = &mut sum.0;
         let mut times = [0.0; LANES];
@@ -159,7 +159,7 @@ impl Pack {
             let (x, y, z) = (at.x - cx[k], at.y - cy[k], at.z - cz[k]);
             let square = x * x + y * y + z * z + LEAST;
             // Of a near one nothing counts, but it has to be a number.
-            let inverse = 1.0 / square.max(near[k]).sqrt();
+            let inverse = 1.0 / square.max(near_squared[k]).sqrt();
             let (x, y, z) = (x * inverse, y * inverse, z * inverse);
             // To second order the mean distance is m r - D.u + (tr Q - u.Qu) / (2 r), with u the direction, D the dipole and
             // Q the quadrupole.
@@ -168,7 +168,7 @@ impl Pack {
             let qz = xz[k] * x + yz[k] * y + zz[k] * z;
             let second = 1.5 * (qx * x + qy * y + qz * z) - 0.5 * (xx[k] + yy[k] + zz[k]);
             let straight = monopole[k] + inverse * (dx[k] * x + dy[k] * y + dz[k] * z + inverse * second);
-            let far = if square < near[k] { 0.0 } else { 1.0 };
+            let far = if square < near_squared[k] { 0.0 } else { 1.0 };
             times[k] = far;
             right[k] += far * (straight * x - inverse * (dx[k] + inverse * qx));
             up[k] += far * (straight * y - inverse * (dy[k] + inverse * qy));
