@@ -62,7 +62,9 @@ fn together(report: &mut Report, all: &[Vec<Means>]) {
                 let one =
                     |m: &Vec<Means>| Some(m.iter().find(|m| m.way == way && m.count == count)?.values[at]);
                 let values: Vec<f64> = all.iter().filter_map(one).collect();
-                Some((values.iter().map(|value| value.ln()).sum::<f64>() / values.len() as f64).exp())
+                Some(libm::exp(
+                    values.iter().map(|&value| libm::log(value)).sum::<f64>() / values.len() as f64,
+                ))
             };
             let mut row = vec![way.name().to_owned(), count.to_string()];
             row.extend(ERRORS.map(|name| of(name).map_or("-".to_owned(), |mean| format!("{mean:.3}"))));
