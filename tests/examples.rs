@@ -8,6 +8,9 @@ use ldwrap::{CheckOptions, PolygonSoup, SurfaceMesh};
 #[path = "../crates/core/examples/integral.rs"]
 mod integral;
 #[allow(dead_code)]
+#[path = "../crates/core/examples/limit.rs"]
+mod limit;
+#[allow(dead_code)]
 #[path = "../crates/core/examples/point_cloud.rs"]
 mod point_cloud;
 #[allow(dead_code)]
@@ -101,4 +104,18 @@ fn surfels_have_the_area_of_the_surface() {
     // Equalized points stand for about the same area each.
     let mean = (mesh.area() / 500.0 / std::f64::consts::PI).sqrt();
     assert!(radii.iter().all(|r| (0.7..1.3).contains(&(r / mean))));
+}
+
+/// Kendall's constant for the hexagonal lattice; and planes cut a sphere, at heights that are even, in circles of pi^2 / 2 in
+/// the mean.
+#[test]
+fn limits_are_those_of_lattice_and_sphere() {
+    use std::f64::consts::PI;
+
+    assert!((limit::lattice() - 0.0717).abs() < 5e-4, "{}", limit::lattice());
+    let sphere = mesh(&Shape::Sphere.generate());
+    let [_, half_space] = limit::figures(&sphere, 4);
+    let border = PI * PI / 2.0 / (4.0 * PI).sqrt();
+    assert!((half_space.border / border - 1.0).abs() < 0.05, "{}", half_space.border);
+    assert!((half_space.variance - 1.0 / 6.0).abs() < 0.002, "{}", half_space.variance);
 }
