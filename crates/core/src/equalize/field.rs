@@ -8,11 +8,11 @@ use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 
-use super::quadrature::Quadrature;
+use super::quadrature::{Quadrature, outer, trace};
 use super::sources::{Marks, Moments, Sources, Sum};
 
 /// Bodies in a group of the finest level. They follow each other as the balanced regions do, so they lie together.
-pub(super) const LEAF: usize = 8;
+const LEAF: usize = 8;
 
 /// Groups that make one of the next level.
 const BRANCHES: usize = 2;
@@ -191,7 +191,8 @@ impl<'a> Surroundings<'a> {
     fn slope(&mut self, from: DVec3) -> DVec3 {
         let mut sum = Sum::default();
         let at = (from - self.origin).as_vec3();
-        self.groups.add_slope(at, &mut sum, &mut Marks::default());
+        // No group is near, so the marks of the cells follow.
+        self.groups.add_slope(at, &mut sum, &mut self.marks);
         self.points.subtract_directions(at, &mut sum);
         self.cells.add_slope(at, &mut sum, &mut self.marks);
         let mut slope = sum.total();
@@ -218,14 +219,6 @@ impl Group {
         }
         group
     }
-}
-
-pub(super) fn outer(v: DVec3) -> DMat3 {
-    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
-}
-
-pub(super) fn trace(matrix: &DMat3) -> f64 {
-    matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z
 }
 
 #[cfg(test)]

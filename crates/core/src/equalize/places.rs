@@ -18,14 +18,12 @@ pub(super) struct Spot {
 
 const PLACES: u64 = 0x70_6c_61_01;
 
-/// For each site that wants them `count` places of its cell, each standing for the same share of the cell's mass.
-pub(super) fn spots(
+/// What the sites that want it own, piece by piece.
+pub(super) fn pieces_of(
     layout: &Layout,
     relaxed: &Relaxed,
-    wants: impl Fn(usize) -> bool + Sync + Send,
-    count: u32,
-    seed: u64,
-) -> Vec<Vec<Spot>> {
+    wants: impl Fn(usize) -> bool,
+) -> Vec<Vec<Piece>> {
     let mut wanted = vec![false; layout.blocks.len()];
     for site in (0..relaxed.sites.len()).filter(|&site| wants(site)) {
         for holding in relaxed.holdings.of(site) {
@@ -39,6 +37,18 @@ pub(super) fn spots(
             pieces_of[piece.site as usize].push(piece);
         }
     }
+    pieces_of
+}
+
+/// For each site that wants them `count` places of its cell, each standing for the same share of the cell's mass.
+pub(super) fn spots(
+    layout: &Layout,
+    relaxed: &Relaxed,
+    wants: impl Fn(usize) -> bool + Sync + Send,
+    count: u32,
+    seed: u64,
+) -> Vec<Vec<Spot>> {
+    let pieces_of = pieces_of(layout, relaxed, wants);
     parallel::map(pieces_of.len(), |site| {
         let mut random = Random::new(seed ^ site as u64, PLACES);
         let step = relaxed.cells[site].mass / f64::from(count);

@@ -2,13 +2,13 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::clip;
-use super::diagram::{Owners, Power, walk_some};
-use super::field::{outer, trace};
 use super::holdings::Holding;
-use super::layout::{Layout, Place};
+use super::layout::Layout;
+use super::owners::Piece;
+use super::places::pieces_of;
 use super::relax::Relaxed;
 use super::sources::LANES;
+use crate::geometry::triangle::longest_side;
 use crate::parallel;
 
 /// At most so many places for a cell; a multiple of the lanes.
@@ -42,17 +42,22 @@ struct Atom {
 
 /// For some sites, in order; lengths times `unit`. Linear in tiles.
 pub(super) fn quadratures(layout: &Layout, relaxed: &Relaxed, sites: &[u32], unit: f64) -> Vec<Quadrature> {
-    let coarse = Coarse::find(layout, relaxed, sites);
+    let mut coarse = vec![false; relaxed.sites.len()];
+    for site in sites.iter().map(|&site| site as usize) {
+        let most = COARSE * relaxed.cells[site].mass;
+        coarse[site] = relaxed.holdings.of(site).iter().any(|holding| holding.mass > most);
+    }
+    let pieces = pieces_of(layout, relaxed, |site| coarse[site]);
     parallel::map(sites.len(), |i| {
         let site = sites[i] as usize;
-        let cut = coarse.of(site);
-        let atoms = if cut.is_empty() {
+        let cell = &relaxed.cells[site];
+        let atoms = if pieces[site].is_empty() {
             let atom = |holding: &Holding| Atom { place: holding.centroid(layout), mass: holding.mass };
             evenly(relaxed.holdings.of(site).iter().map(atom))
         } else {
-            evenly(cut.iter().map(|(_, atom)| *atom))
+            evenly(cut(layout, &pieces[site], SHARE * cell.mass).into_iter())
         };
-        Quadrature::new(relaxed.cells[site].centroid(), &atoms, unit)
+        Quadrature::new(cell.centroid(), &atoms, unit)
     })
 }
 
@@ -108,6 +113,15 @@ impl Quadrature {
     }
 }
 
+/// The matrix that a vector makes with itself.
+pub(super) fn outer(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
+pub(super) fn trace(matrix: &DMat3) -> f64 {
+    matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z
+}
+
 /// Of more than [`ATOMS`] atoms as many, evenly by mass; all of fewer.
 fn evenly(atoms: impl Iterator<Item = Atom> + Clone) -> Vec<Atom> {
     if atoms.clone().nth(ATOMS).is_none() {
@@ -124,115 +138,38 @@ fn evenly(atoms: impl Iterator<Item = Atom> + Clone) -> Vec<Atom> {
     chosen
 }
 
-/// The pieces of cells on coarse tiles, site by site.
-struct Coarse(Vec<(u32, Atom)>);
-
-impl Coarse {
-    fn find(layout: &Layout, relaxed: &Relaxed, sites: &[u32]) -> Self {
-        let Relaxed { near, cells, holdings, .. } = relaxed;
-        let mut masses = vec![0.0; cells.len()];
-        let mut wanted = vec![false; layout.blocks.len()];
-        for &site in sites {
-            let (mass, own) = (cells[site as usize].mass, holdings.of(site as usize));
-            if own.iter().any(|holding| holding.mass > COARSE * mass) {
-                masses[site as usize] = mass;
-                own.iter().for_each(|holding| wanted[layout.block_of(holding.tile)] = true);
-            }
-        }
-        let blocks: Vec<u32> =
-            (0..).zip(wanted).filter(|(_, wanted)| *wanted).map(|(block, _)| block).collect();
-        let new = || Cuts { layout, masses: &masses, sites: Vec::new(), atoms: Vec::new() };
-        let heard = walk_some(layout, near, &relaxed.sites, &blocks, new);
-        let mut atoms: Vec<(u32, Atom)> = heard.into_iter().flat_map(|cuts| cuts.atoms).collect();
-        // Stable: those of a site keep their order.
-        atoms.sort_by_key(|(site, _)| *site);
-        Self(atoms)
-    }
-
-    fn of(&self, site: usize) -> &[(u32, Atom)] {
-        let site = site as u32;
-        let start = self.0.partition_point(|(other, _)| *other < site);
-        let end = self.0.partition_point(|(other, _)| *other <= site);
-        &self.0[start..end]
-    }
-}
-
-/// How much mass an atom of a piece may have. Of what rounding leaves of a cell nothing is a small share.
-fn most(of_cell: f64, piece: f64) -> f64 {
-    (SHARE * of_cell).max(piece / ATOMS as f64)
-}
-
-/// Hears what sites own, cut into atoms.
-struct Cuts<'a> {
-    layout: &'a Layout,
-    /// Of the cells that are wanted; 0 for the others.
-    masses: &'a [f64],
-    sites: Vec<u32>,
-    atoms: Vec<(u32, Atom)>,
-}
-
-impl Cuts<'_> {
-    /// Adds a triangle, in halves across its longest side until they are light enough.
-    fn add(&mut self, site: u32, [a, b, c]: [DVec3; 3], mass: f64, most: f64) {
-        if mass <= most {
-            self.atoms.push((site, Atom { place: (a + b + c) / 3.0, mass }));
-            return;
-        }
-        let squares = [b.distance_squared(c), c.distance_squared(a), a.distance_squared(b)];
-        let (a, b, c) = if squares[0] >= squares[1] && squares[0] >= squares[2] {
-            (a, b, c)
-        } else if squares[1] >= squares[2] {
-            (b, c, a)
-        } else {
-            (c, a, b)
-        };
-        let middle = b.midpoint(c);
-        self.add(site, [a, b, middle], 0.5 * mass, most);
-        self.add(site, [a, middle, c], 0.5 * mass, most);
-    }
-}
-
-impl Owners for Cuts<'_> {
-    const POLYGONS: bool = true;
-
-    fn begin(&mut self, contenders: &[Power]) {
-        self.sites.clear();
-        self.sites.extend(contenders.iter().map(|power| power.site));
-    }
-
-    fn whole(&mut self, site: usize, tile: usize, mass: f64) {
-        let site = self.sites[site];
-        let of_cell = self.masses[site as usize];
-        if of_cell > 0.0 {
-            self.add(site, self.layout.corners(&self.layout.tiles[tile]), mass, most(of_cell, mass));
-        }
-    }
-
-    fn part(&mut self, site: usize, tile: usize, mass: f64, _: [f64; 2], polygon: &[clip::Corner]) {
-        let site = self.sites[site];
-        let of_cell = self.masses[site as usize];
-        if of_cell <= 0.0 {
-            return;
-        }
-        let [a, b, c] = self.layout.corners(&self.layout.tiles[tile]);
-        let at = |p: &clip::Corner| a + (b - a) * p.u + (c - a) * p.v;
-        let first = DVec2::new(polygon[0].u, polygon[0].v);
-        let from_first = |p: &clip::Corner| DVec2::new(p.u, p.v) - first;
-        let doubled = |p: &[clip::Corner]| from_first(&p[0]).perp_dot(from_first(&p[1]));
-        let all: f64 = polygon[1..].windows(2).map(doubled).sum();
-        for pair in polygon[1..].windows(2) {
-            let share = mass * (doubled(pair) / all);
-            if share > 0.0 {
-                self.add(site, [at(&polygon[0]), at(&pair[0]), at(&pair[1])], share, most(of_cell, mass));
+/// Pieces cut into atoms of at most so much mass.
+fn cut(layout: &Layout, pieces: &[Piece], most: f64) -> Vec<Atom> {
+    let mut atoms = Vec::new();
+    for piece in pieces {
+        let [a, b, c] = layout.corners(&layout.tiles[piece.tile as usize]);
+        let at = |p: DVec2| a + (b - a) * p.x + (c - a) * p.y;
+        let first = piece.polygon[0];
+        let doubled = |p: &[DVec2]| (p[0] - first).perp_dot(p[1] - first);
+        let all: f64 = piece.polygon[1..].windows(2).map(doubled).sum();
+        // Of what rounding leaves of a cell everything would be heavy.
+        let most = most.max(piece.mass / ATOMS as f64);
+        for pair in piece.polygon[1..].windows(2) {
+            let mass = piece.mass * (doubled(pair) / all);
+            if mass > 0.0 {
+                halve([at(first), at(pair[0]), at(pair[1])], mass, most, &mut atoms);
             }
         }
     }
+    atoms
+}
 
-    fn moment(&mut self, _: usize, _: Place) {}
-
-    fn border(&mut self, _: [usize; 2], _: f64) {}
-
-    fn end(&mut self, _: &[Power]) {}
+/// Adds a triangle, in halves across its longest side until they are light enough.
+fn halve(corners: [DVec3; 3], mass: f64, most: f64, atoms: &mut Vec<Atom>) {
+    if mass <= most {
+        atoms.push(Atom { place: corners.iter().sum::<DVec3>() / 3.0, mass });
+        return;
+    }
+    let (longest, _) = longest_side(corners);
+    let [from, to, across] = [0, 1, 2].map(|k| corners[(longest + k) % 3]);
+    let middle = from.midpoint(to);
+    halve([across, from, middle], 0.5 * mass, most, atoms);
+    halve([across, middle, to], 0.5 * mass, most, atoms);
 }
 
 #[cfg(test)]

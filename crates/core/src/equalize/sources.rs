@@ -8,7 +8,7 @@ pub(super) const LANES: usize = 8;
 type Lanes = [f32; LANES];
 
 /// Masses that lie together, about a centre, but for where that is.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Moments {
     monopole: f32,
     dipole: Vec3,
@@ -119,7 +119,7 @@ impl Sources {
         }
     }
 
-    /// Adds the slope of the mean distance to the sources; marks those that are too near and leaves them out.
+    /// Adds the slope of the mean distance to the sources; marks those, and only those, that are too near and leaves them out.
     pub(super) fn add_slope(&self, at: Vec3, sum: &mut Sum, marks: &mut Marks) {
         marks.0.clear();
         for pack in &self.packs {
