@@ -145,13 +145,14 @@ fn what_is_stopped_leaves_nothing_behind() {
     }
 }
 
-/// Samples alone would be 224 MB.
+/// Samples alone would be 448 MB; what the allocator keeps differs by some 30 MB from run to run.
 #[cfg(target_os = "linux")]
 #[test]
 fn never_are_all_points_in_memory() {
+    const POINTS: usize = 8_000_000;
     let folder = Folder::with_octahedron();
     let mut child = Command::new(env!("CARGO_BIN_EXE_ldwrap-cli"))
-        .args("--threads 2 wrap octahedron.obj -n 4000000 --no-equalize -q -o p.npy".split_whitespace())
+        .args("--threads 2 wrap octahedron.obj -n 8000000 --no-equalize -q -o p.npy".split_whitespace())
         .current_dir(folder.path(""))
         .spawn()
         .expect("the program runs");
@@ -163,6 +164,7 @@ fn never_are_all_points_in_memory() {
         peak = peak.max(1024 * kilobytes.unwrap_or(0));
         sleep(Duration::from_millis(2));
     }
-    assert_eq!(folder.read("p.npy").len(), 128 + 24 * 4_000_000);
-    assert!(peak > 10_000_000 && peak < 64 * 4_000_000, "{peak} bytes");
+    assert_eq!(folder.read("p.npy").len(), 128 + 24 * POINTS);
+    let samples = size_of::<ldwrap::Sample>() * POINTS;
+    assert!(peak > 10_000_000 && peak < samples as u64, "{peak} bytes");
 }
