@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::balance::{Item, balance};
 use super::tiles::{Tile, Tiles};
+use crate::geometry::triangle;
 use crate::ids::FaceId;
 use crate::parallel;
 
@@ -74,6 +75,10 @@ impl Places {
     /// The coordinates of some of the places.
     pub(super) fn of(&self, range: &Range<usize>) -> [&[f64]; 6] {
         [0, 1, 2, 3, 4, 5].map(|axis| &self.0[axis][range.clone()])
+    }
+
+    fn with_room(count: usize) -> Self {
+        Self([(); 6].map(|()| Vec::with_capacity(count)))
     }
 
     fn push(&mut self, place: &Place) {
@@ -146,6 +151,21 @@ impl Layout {
         self.blocks.partition_point(|block| block.tiles.end <= tile as usize)
     }
 
+    /// What was laid out by itself, piece after piece.
+    fn of_pieces(pieces: Vec<Self>) -> Self {
+        // No more room than it takes: there are as many tiles as triangles.
+        let room = |of: fn(&Self) -> usize| pieces.iter().map(of).sum();
+        let mut whole = Self {
+            tiles: Vec::with_capacity(room(|piece| piece.tiles.len())),
+            places: Places::with_room(room(|piece| piece.places.len())),
+            blocks: Vec::with_capacity(room(|piece| piece.blocks.len())),
+        };
+        for piece in pieces {
+            whole.append(piece);
+        }
+        whole
+    }
+
     /// Adds what was laid out by itself.
     fn append(&mut self, mut other: Self) {
         let (tiles, places) = (self.tiles.len(), self.places.len());
@@ -173,14 +193,14 @@ pub(super) struct Due {
 
 /// Balances clumps and points (in the order of their patches, `counts` for each); says in which block each point is
 /// due, block by block.
-pub(super) fn lay_out(tiles: &Tiles, counts: &[usize], points: Vec<Item>) -> (Layout, Vec<Due>) {
-    let clumps = parallel::map(tiles.clump_ends.len(), |id| clump(tiles, id as u32));
+pub(super) fn lay_out(tiles: Tiles, counts: &[usize], points: Vec<Item>) -> (Layout, Vec<Due>) {
+    let clumps = parallel::map(tiles.clump_count(), |id| clump(&tiles, id as u32));
     let mut items: Vec<Vec<Item>> = vec![Vec::new(); counts.len()];
-    for (patch, item) in clumps {
-        items[patch as usize].push(item);
+    for item in clumps {
+        items[tiles.patch_of(item.id as usize) as usize].push(item);
     }
     let mut next = points.into_iter();
-    let mut order: Vec<u32> = Vec::with_capacity(tiles.clump_ends.len());
+    let mut order: Vec<u32> = Vec::with_capacity(tiles.clump_count());
     let mut regions = Vec::new();
     let mut dues = Vec::new();
     for (mut items, &count) in items.into_iter().zip(counts) {
@@ -200,15 +220,12 @@ pub(super) fn lay_out(tiles: &Tiles, counts: &[usize], points: Vec<Item>) -> (La
         let mut layout = Layout::default();
         let mut numbers = Numbers { of_place: vec![0; tiles.places.len()], given: 0 };
         for (members, points) in &regions[range] {
-            block(tiles, &order[members.clone()], *points, &mut numbers, &mut layout);
+            block(&tiles, &order[members.clone()], *points, &mut numbers, &mut layout);
         }
         layout
     });
-    let mut layout = Layout::default();
-    for piece in pieces {
-        layout.append(piece);
-    }
-    (layout, dues)
+    drop(tiles);
+    (Layout::of_pieces(pieces), dues)
 }
 
 /// The mean place of a tile.
@@ -220,18 +237,17 @@ fn centre(places: &[Place], tile: &Tile) -> Place {
     }
 }
 
-/// A clump as a mass at its mean place, and its patch.
-fn clump(all: &Tiles, id: u32) -> (u32, Item) {
-    let (mut patch, mut mass) = (0, 0.0);
+/// A clump as a mass at its mean place.
+fn clump(all: &Tiles, id: u32) -> Item {
+    let mut mass = 0.0;
     let mut moment = Place::default();
     for tile in all.clump(id as usize) {
         let centre = centre(&all.places, tile);
-        patch = tile.patch;
         mass += tile.mass;
         moment.position += centre.position * tile.mass;
         moment.normal += centre.normal * tile.mass;
     }
-    (patch, Item { position: moment.position / mass, normal: moment.normal / mass, mass, id })
+    Item { position: moment.position / mass, normal: moment.normal / mass, mass, id }
 }
 
 /// Numbers the places of one block after the other.
@@ -268,7 +284,8 @@ fn block(all: &Tiles, clumps: &[u32], points: u32, numbers: &mut Numbers, layout
         let centre = centre(&all.places, tile);
         centres.push(centre);
         mass += tile.mass;
-        area += tile.area;
+        let [a, b, c] = tile.corners.map(|id| all.places[id as usize].position);
+        area += triangle::area(a, b, c);
         moment.position += centre.position * tile.mass;
         moment.normal += centre.normal * tile.mass;
         for corner in &mut tile.corners {
@@ -291,7 +308,7 @@ fn block(all: &Tiles, clumps: &[u32], points: u32, numbers: &mut Numbers, layout
         places: first_place..layout.places.len(),
         bounds: Bounds::between(low, high),
         centre: nearest.filter(|place| aside(place) > distance * distance).unwrap_or(mean),
-        patch: tiles[0].patch,
+        patch: all.patch_of(clumps[0] as usize),
         points,
         distance,
     };

@@ -131,7 +131,7 @@ pub fn equalize(
     let places: Vec<DVec3> = parallel::map(n, |i| mesh.locate(&points[i]) - scale.middle);
     let tiles = tiles(mesh, &patches.of_face, &scale);
     let items = items(mesh, &patches, points, &places, options.bend * d_m);
-    let (layout, dues) = lay_out(&tiles, &patches.counts, items);
+    let (layout, dues) = lay_out(tiles, &patches.counts, items);
     let sites = |at: &dyn Fn(&Due) -> DVec3| -> Vec<Site> {
         let site = |due: &Due| {
             let block = &layout.blocks[due.block as usize];
@@ -153,8 +153,10 @@ pub fn equalize(
         if stays { own } else { centre }
     });
     let mut patch_mass = vec![0.0; patches.counts.len()];
-    for tile in &layout.tiles {
-        patch_mass[tile.patch as usize] += tile.mass;
+    for block in &layout.blocks {
+        for tile in &layout.tiles[block.tiles.clone()] {
+            patch_mass[block.patch as usize] += tile.mass;
+        }
     }
     let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();

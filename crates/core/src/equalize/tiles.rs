@@ -16,11 +16,17 @@ pub(super) struct Tile {
     /// Which places are its corners.
     pub(super) corners: [u32; 3],
     pub(super) face: FaceId,
-    /// The patch that it belongs to.
-    pub(super) patch: u32,
     /// Its share of the mass (area times density) to be spread over the points.
     pub(super) mass: f64,
-    pub(super) area: f64,
+}
+
+/// Tiles that lie close together.
+#[derive(Clone, Copy, Debug)]
+struct Clump {
+    /// Where it ends among all tiles in order.
+    end: u32,
+    /// The patch that it belongs to.
+    patch: u32,
 }
 
 /// Tiles in clumps.
@@ -31,15 +37,25 @@ pub(super) struct Tiles {
     tiles: Vec<Tile>,
     /// Which tiles the clumps have, one clump after the other.
     order: Vec<u32>,
-    /// Where each clump ends in that order; ascending.
-    pub(super) clump_ends: Vec<u32>,
+    /// Ascending.
+    clumps: Vec<Clump>,
 }
 
 impl Tiles {
+    /// How many clumps there are.
+    pub(super) fn clump_count(&self) -> usize {
+        self.clumps.len()
+    }
+
+    /// The patch that a clump belongs to.
+    pub(super) fn patch_of(&self, clump: usize) -> u32 {
+        self.clumps[clump].patch
+    }
+
     /// The tiles of a clump.
     pub(super) fn clump(&self, clump: usize) -> impl Iterator<Item = &Tile> + Clone {
-        let start = if clump == 0 { 0 } else { self.clump_ends[clump - 1] as usize };
-        self.order[start..self.clump_ends[clump] as usize].iter().map(|&tile| &self.tiles[tile as usize])
+        let start = if clump == 0 { 0 } else { self.clumps[clump - 1].end as usize };
+        self.order[start..self.clumps[clump].end as usize].iter().map(|&tile| &self.tiles[tile as usize])
     }
 }
 
@@ -146,7 +162,7 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
                     let halvings = libm::log2(density.max(1.0)) * 0.5;
                     let side = CLUMP * scale.d_m * libm::exp2(-libm::floor(halvings));
                     let cube = cell_key((a + b + c) / 3.0 + from_low, side.max(smallest));
-                    let tile = Tile { corners: corners.map(|c| c.id), face, patch, mass, area };
+                    let tile = Tile { corners: corners.map(|c| c.id), face, mass };
                     Some(((patch, halvings as u32, cube), tile))
                 },
                 shared,
@@ -154,6 +170,7 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
         }
         cut
     });
+    drop(normals);
     // Corners of faces by themselves come after the shared ones, piece by piece.
     let count = pieces.iter().map(|piece| piece.tiles.len()).sum();
     let mut tiles: Vec<Tile> = Vec::with_capacity(count);
@@ -166,15 +183,15 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
         places.extend(piece.places);
     }
     parallel::sort(&mut keys);
-    let mut clump_ends = Vec::new();
-    for (i, pair) in (1..).zip(keys.windows(2)) {
-        if pair[0].0 != pair[1].0 {
-            clump_ends.push(i);
-        }
-    }
-    clump_ends.push(keys.len() as u32);
+    let mut end = 0;
+    let clumps = keys.chunk_by(|a, b| a.0 == b.0).map(|clump| {
+        end += clump.len() as u32;
+        let ((patch, ..), _) = clump[0];
+        Clump { end, patch }
+    });
+    let clumps = clumps.collect();
     let order = keys.into_iter().map(|(_, tile)| tile).collect();
-    Tiles { places, tiles, order, clump_ends }
+    Tiles { places, tiles, order, clumps }
 }
 
 #[derive(Clone, Copy)]
