@@ -57,9 +57,10 @@ pub(super) fn holdings(layout: &Layout, near: &Near, sites: &[Site]) -> (Vec<Cel
         ends[site + 1] += ends[site];
     }
     let mut all = vec![Holding::default(); ends[sites.len()] as usize];
-    for (site, holding) in pieces.iter().flat_map(|piece| &piece.all) {
-        let slot = &mut ends[*site as usize];
-        all[*slot as usize] = *holding;
+    // By value: what was put in order is given back.
+    for (site, holding) in pieces.into_iter().flat_map(|piece| piece.all) {
+        let slot = &mut ends[site as usize];
+        all[*slot as usize] = holding;
         *slot += 1;
     }
     // Each start went up to the end.

@@ -81,6 +81,10 @@ impl Places {
         Self([(); 6].map(|()| Vec::with_capacity(count)))
     }
 
+    fn shrink(&mut self) {
+        self.0.iter_mut().for_each(Vec::shrink_to_fit);
+    }
+
     fn push(&mut self, place: &Place) {
         let coordinates = [place.position.to_array(), place.normal.to_array()];
         for (all, x) in self.0.iter_mut().zip(coordinates.as_flattened()) {
@@ -132,6 +136,12 @@ pub(super) struct Ground {
 }
 
 impl Layout {
+    /// The area of a tile.
+    pub(super) fn area(&self, tile: &Tile) -> f64 {
+        let [a, b, c] = self.corners(tile);
+        triangle::area(a, b, c)
+    }
+
     /// The positions of a tile's corners.
     #[inline]
     pub(super) fn corners(&self, tile: &Tile) -> [DVec3; 3] {
@@ -219,9 +229,14 @@ pub(super) fn lay_out(tiles: Tiles, counts: &[usize], points: Vec<Item>) -> (Lay
     let pieces = parallel::map_chunks(regions.len(), chunk, |range| {
         let mut layout = Layout::default();
         let mut numbers = Numbers { of_place: vec![0; tiles.places.len()], given: 0 };
+        let count = |(members, _): &(Range<usize>, u32)| -> usize {
+            order[members.clone()].iter().map(|&clump| tiles.clump_len(clump as usize)).sum()
+        };
+        layout.tiles.reserve_exact(regions[range.clone()].iter().map(count).sum());
         for (members, points) in &regions[range] {
             block(&tiles, &order[members.clone()], *points, &mut numbers, &mut layout);
         }
+        layout.places.shrink();
         layout
     });
     drop(tiles);

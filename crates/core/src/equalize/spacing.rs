@@ -8,7 +8,6 @@ use super::holdings::Holding;
 use super::near::Runs;
 use super::places::{Spot, spots};
 use super::settle::Cells;
-use crate::geometry::triangle;
 use crate::parallel;
 
 /// The distance that points keep, in distances of the points: a little more than half of the hexagonal ideal.
@@ -55,8 +54,7 @@ fn width(cells: &Cells<'_>, site: usize) -> f64 {
     let Cells { layout, relaxed, .. } = cells;
     let area = |holding: &Holding| {
         let tile = &layout.tiles[holding.tile as usize];
-        let [a, b, c] = layout.corners(tile);
-        holding.mass / tile.mass * triangle::area(a, b, c)
+        holding.mass / tile.mass * layout.area(tile)
     };
     let area: f64 = relaxed.holdings.of(site).iter().filter(|holding| holding.mass > 0.0).map(area).sum();
     libm::sqrt(area)

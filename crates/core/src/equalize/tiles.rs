@@ -1,5 +1,7 @@
 //! The surface cut into tiles: triangles no longer than the distance of the points, each with a mass to share out.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::layout::Place;
@@ -52,10 +54,19 @@ impl Tiles {
         self.clumps[clump].patch
     }
 
+    /// How many tiles a clump has.
+    pub(super) fn clump_len(&self, clump: usize) -> usize {
+        self.range(clump).len()
+    }
+
     /// The tiles of a clump.
     pub(super) fn clump(&self, clump: usize) -> impl Iterator<Item = &Tile> + Clone {
-        let start = if clump == 0 { 0 } else { self.clumps[clump - 1].end as usize };
-        self.order[start..self.clumps[clump].end as usize].iter().map(|&tile| &self.tiles[tile as usize])
+        self.order[self.range(clump)].iter().map(|&tile| &self.tiles[tile as usize])
+    }
+
+    fn range(&self, clump: usize) -> Range<usize> {
+        let start = if clump == 0 { 0 } else { self.clumps[clump - 1].end };
+        start as usize..self.clumps[clump].end as usize
     }
 }
 
