@@ -17,8 +17,8 @@ use ldwrap_tests::{
     shapes_about, unfolded,
 };
 
-const ORDERS: [GrowthOrder; 3] =
-    [GrowthOrder::BoundaryWalk, GrowthOrder::FlattestFirst, GrowthOrder::LongestFirst];
+const ORDERS: [GrowthOrder; 4] =
+    [GrowthOrder::BoundaryWalk, GrowthOrder::FlattestFirst, GrowthOrder::LongestFirst, GrowthOrder::Rehung];
 
 /// R at `n` points, with the paper's tolerance.
 fn irregularity_at(mesh: &SurfaceMesh, strips: &Strips, n: usize) -> Irregularity {

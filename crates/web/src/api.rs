@@ -33,7 +33,7 @@ export interface Options {
   /** The largest angle in degrees that counts as almost flat. Default: 60. */
   flatnessAngle?: number;
   /** Default: "least-open". */
-  growth?: "least-open" | "flattest-first" | "boundary-walk" | "longest-first";
+  growth?: "least-open" | "rehung" | "flattest-first" | "boundary-walk" | "longest-first";
   /** Smaller segments go on growing; a share of all triangles. Default: 0.002. */
   smallestShare?: number;
   /** Interstices and overlaps thinner than this many d_m are corrected. Default: 0.1. */

@@ -160,6 +160,8 @@ pub(crate) struct SegmentArgs {
 pub(crate) enum GrowthArg {
     /// What opens the least border in the plane first; several ways are tried
     LeastOpen,
+    /// The same, then parts of strips are hung elsewhere as long as that opens less; slower
+    Rehung,
     /// The paper's: along the boundary, first in, first out
     BoundaryWalk,
     /// The smallest angle between the normals first
@@ -172,6 +174,7 @@ impl From<GrowthOrder> for GrowthArg {
     fn from(order: GrowthOrder) -> Self {
         match order {
             GrowthOrder::LeastOpen => Self::LeastOpen,
+            GrowthOrder::Rehung => Self::Rehung,
             GrowthOrder::BoundaryWalk => Self::BoundaryWalk,
             GrowthOrder::FlattestFirst => Self::FlattestFirst,
             GrowthOrder::LongestFirst => Self::LongestFirst,
@@ -183,6 +186,7 @@ impl From<GrowthArg> for GrowthOrder {
     fn from(arg: GrowthArg) -> Self {
         match arg {
             GrowthArg::LeastOpen => Self::LeastOpen,
+            GrowthArg::Rehung => Self::Rehung,
             GrowthArg::BoundaryWalk => Self::BoundaryWalk,
             GrowthArg::FlattestFirst => Self::FlattestFirst,
             GrowthArg::LongestFirst => Self::LongestFirst,

@@ -95,3 +95,67 @@ fn fitting_reaches_all_of_a_component_and_knows_what_it_opens() {
         }
     }
 }
+
+#[test]
+fn what_is_rehung_hangs_together_and_opens_less() {
+    for (shape, most) in [
+        (Shape::Torus, 0.75),
+        (Shape::Cup, 0.9),
+        (Shape::Sphere, 0.98),
+        (Shape::Capsule, 1.0),
+        (Shape::Cube, 1.0),
+    ] {
+        let mesh = planted::mesh(&shape.generate());
+        for n in [335.0, 10_000.0] {
+            let tolerance = 0.1 * libm::sqrt(mesh.area() / n);
+            let options = SegmentOptions { order: GrowthOrder::Rehung, ..SegmentOptions::default() };
+            let segmentation = segment_for(&mesh, &options, tolerance);
+            let mut there = vec![false; mesh.face_count()];
+            for attachment in segmentation.segments.iter().flat_map(|s| &s.attachments) {
+                if let Some(across) = attachment.across {
+                    let above = mesh.topology().twin(across).map(|twin| twin.face());
+                    assert!(
+                        across.face() == attachment.face && above.is_some_and(|face| there[face.index()])
+                    );
+                }
+                assert!(!std::mem::replace(&mut there[attachment.face.index()], true));
+            }
+            assert!(there.iter().all(|there| *there));
+            let open = unfold(&mesh, &segmentation).open_border_length(tolerance);
+            let before = open_length(&mesh, GrowthOrder::LeastOpen, tolerance);
+            assert!(open <= most * before * (1.0 + 1e-9), "{shape:?} {n}: {open} of {before}");
+        }
+    }
+}
+
+/// A cube cannot be opened along less than seven edges. Here its diagonals are open too.
+#[test]
+fn a_badly_cut_cube_is_rehung_as_it_can_be() {
+    let mut soup = crate::mesh::PolygonSoup::default();
+    soup.positions
+        .extend((0..8).map(|i| glam::DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2))));
+    for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
+        soup.push_polygon(&[a, b, c]);
+        soup.push_polygon(&[a, c, d]);
+    }
+    let cube = planted::mesh(&soup);
+    let twin = |side: HalfedgeId| cube.topology().twin(side).expect("closed");
+    let is_diagonal = |side: HalfedgeId| cube.fold_angle(side).expect("closed") < 0.1;
+    // Across diagonals only where there is no other way.
+    let mut attachments = vec![Attachment { face: FaceId::new(0), across: None }];
+    let mut there = vec![false; cube.face_count()];
+    there[0] = true;
+    while attachments.len() < cube.face_count() {
+        let sides = attachments.iter().flat_map(|a| (0..3).map(|c| HalfedgeId::of(a.face, c)));
+        let ways = sides.map(twin).filter(|across| !there[across.face().index()]);
+        let across = ways.min_by_key(|&across| is_diagonal(across)).expect("connected");
+        there[across.face().index()] = true;
+        attachments.push(Attachment { face: across.face(), across: Some(across) });
+    }
+    let tolerance = 0.01;
+    let open = |segmentation: &Segmentation| unfold(&cube, segmentation).open_border_length(tolerance);
+    let bad = Segmentation { segments: vec![Segment { attachments }] };
+    assert!(open(&bad) > 16.0, "{}", open(&bad));
+    let good = open(&rehang(&cube, &bad, tolerance));
+    assert!((good - 14.0).abs() < 1e-9, "{good}");
+}

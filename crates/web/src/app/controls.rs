@@ -172,6 +172,7 @@ fn settings(ui: &mut egui::Ui, settings: &mut Settings, slot: Slot) {
         ui.add_enabled_ui(wraps, |ui| {
             let orders = [
                 (GrowthOrder::LeastOpen, "least open border"),
+                (GrowthOrder::Rehung, "least open border, rehung"),
                 (GrowthOrder::FlattestFirst, "flattest first"),
                 (GrowthOrder::BoundaryWalk, "along the boundary"),
                 (GrowthOrder::LongestFirst, "longest first"),
