@@ -79,11 +79,11 @@ struct Motion {
 }
 
 impl Motion {
-    /// What brings the side `a b` onto `c d`, which is as long: middle onto middle.
-    fn onto((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> Self {
+    /// What brings the side `a b` onto `c d`, which is as long: middle onto middle. `None` where rounding leaves no length.
+    fn onto((a, b): (DVec2, DVec2), (c, d): (DVec2, DVec2)) -> Option<Self> {
         let (own, other) = (b - a, d - c);
-        let turn = DVec2::new(own.dot(other), own.perp_dot(other));
-        Self { from: a.midpoint(b), to: c.midpoint(d), turn: turn / libm::sqrt(turn.length_squared()) }
+        let turn = DVec2::new(own.dot(other), own.perp_dot(other)).try_normalize()?;
+        Some(Self { from: a.midpoint(b), to: c.midpoint(d), turn })
     }
 
     #[inline]
@@ -141,7 +141,7 @@ impl Hanging<'_> {
     /// across `side` to the face of `twin`.
     fn best_move(&mut self, side: HalfedgeId, twin: HalfedgeId) -> Option<Move> {
         let (from, to) = self.ends(twin);
-        let motion = Motion::onto(self.ends(side), (to, from));
+        let motion = Motion::onto(self.ends(side), (to, from))?;
         let into = self.segment[twin.face().index()];
         self.search += 1;
         let (mut faces, mut border) = (0, 0.0);
