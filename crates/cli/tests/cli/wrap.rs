@@ -109,7 +109,7 @@ fn segmentation_options_reach_the_segmentation() {
     // Neighbours of the octahedron meet at 70.5 degrees between their normals.
     assert_eq!(strips("--flatness-angle 80"), 1);
     assert!(strips("--growth flattest-first --flatness-angle 60 --smallest-share 0") > 1);
-    for growth in ["least-open", "boundary-walk", "flattest-first", "longest-first"] {
+    for growth in ["least-open", "rehung", "boundary-walk", "flattest-first", "longest-first"] {
         assert_eq!(strips(&format!("--growth {growth} --flatness-angle 80")), 1);
     }
 }

@@ -11,29 +11,27 @@ use super::{Attachment, Segment, Segmentation};
 use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::SurfaceMesh;
 
-/// At most so many faces are hung elsewhere at once. In two passes over the horse 100 take away 25% of the open border and 300
-/// take away 31%, for three times the work.
+/// At most so many faces are hung elsewhere at once. In two passes over the horse 100 took away 25% of the open border and 300
+/// took away 31%, for three times the work.
 const MOST: usize = 300;
 
-/// How often all open sides are looked at; later passes gain little.
+/// How often all open sides are looked at, at most.
 const PASSES: usize = 4;
 
-/// So many faces are looked at for each face of the mesh, then the search ends wherever it is: a bound for crumpled
-/// surfaces, on which nearly all sides are open. Two passes over scans take
-/// 40 to 60.
+/// So many faces are looked at for each face of a component, then its search ends wherever it is: a bound for crumpled
+/// surfaces, on which nearly all sides are open. Two passes over scans took 40 to 60.
 const WORK: usize = 100;
 
 /// Of a pass that gains less than this share of the open border it is the last.
 const LEAST: f64 = 1e-3;
 
-/// Gains below this many units of the shapes are rounding.
+/// Smaller gains, in units of the shapes, are not worth a move.
 const NOTHING: f64 = 1e-7;
 
 /// Hangs parts of segments elsewhere while that shortens the border that is wider open than `tolerance`, in units of the
-/// mesh. Segments may join. O(F).
-pub(super) fn rehang(mesh: &SurfaceMesh, segmentation: &Segmentation, tolerance: f64) -> Segmentation {
+/// mesh, component by component. Segments may join. O(F).
+pub(super) fn rehang(mesh: &SurfaceMesh, segmentation: Segmentation, tolerance: f64) -> Segmentation {
     let shapes = &Shapes::new(mesh);
-    let tolerance = shapes.relative(tolerance);
     let count = shapes.face_count();
     let mut across = vec![None; count];
     for attachment in segmentation.segments.iter().flat_map(|s| &s.attachments) {
@@ -41,34 +39,23 @@ pub(super) fn rehang(mesh: &SurfaceMesh, segmentation: &Segmentation, tolerance:
     }
     let mut hanging = Hanging {
         shapes,
-        tolerance,
+        tolerance: shapes.relative(tolerance),
         across,
         segment: segmentation.segment_of_face(count).iter().map(|s| s.0).collect(),
-        planar: Planar::of(mesh, shapes, segmentation),
+        planar: Planar::of(mesh, shapes, &segmentation),
         seen: vec![0; count],
         search: 0,
         stack: Vec::new(),
-        left: WORK * count,
+        left: 0,
     };
-    for _ in 0..PASSES {
-        let (mut open, mut gained) = (0.0, 0.0);
-        for side in (0..3 * count as u32).map(HalfedgeId) {
-            let Some(twin) = shapes.side(side).twin() else { continue };
-            if !hanging.is_open(side, twin) {
-                continue;
-            }
-            // Each is met from both sides.
-            open += 0.5 * shapes.side(side).length();
-            if let Some(found) = hanging.best_move(side, twin).filter(|found| found.gain > NOTHING) {
-                hanging.hang(side, twin, found.top);
-                gained += found.gain;
-            }
-        }
-        if gained < LEAST * open || hanging.left == 0 {
-            break;
-        }
+    let component = &mesh.topology().components().of_face;
+    let mut faces: Vec<u32> = (0..count as u32).collect();
+    faces.sort_by_key(|&face| component[face as usize]);
+    let mut is_other = false;
+    for own in faces.chunk_by(|&a, &b| component[a as usize] == component[b as usize]) {
+        is_other |= hanging.improve(own);
     }
-    hanging.segmentation()
+    if is_other { hanging.segmentation() } else { segmentation }
 }
 
 /// A turn and a shift of the plane.
@@ -135,6 +122,34 @@ impl Hanging<'_> {
             (true, false) => -self.shapes.side(side).length(),
             _ => 0.0,
         }
+    }
+
+    /// Goes through the faces of a component until little is gained. Whether any were hung elsewhere.
+    fn improve(&mut self, faces: &[u32]) -> bool {
+        self.left = WORK * faces.len();
+        let mut is_other = false;
+        for _ in 0..PASSES {
+            let (mut open, mut gained) = (0.0, 0.0);
+            for &face in faces {
+                for side in (0..3).map(|corner| HalfedgeId::of(FaceId(face), corner)) {
+                    let Some(twin) = self.shapes.side(side).twin() else { continue };
+                    if !self.is_open(side, twin) {
+                        continue;
+                    }
+                    // Each is met from both sides.
+                    open += 0.5 * self.shapes.side(side).length();
+                    if let Some(found) = self.best_move(side, twin).filter(|found| found.gain > NOTHING) {
+                        self.hang(side, twin, found.top);
+                        gained += found.gain;
+                        is_other = true;
+                    }
+                }
+            }
+            if gained < LEAST * open || self.left == 0 {
+                break;
+            }
+        }
+        is_other
     }
 
     /// Of all that hangs at the face of `side`, at the face that it hangs on, and so on, what gains most when it is hung
