@@ -28,7 +28,7 @@ pub(super) fn merge_small(mesh: &SurfaceMesh, segments: Vec<Segment>, smallest: 
         let Some(entry) = flattest_exit(mesh, &owner, &segments[s]) else { continue };
         let Some(twin) = mesh.topology().twin(entry) else { continue };
         let target = owner[twin.face().index()] as usize;
-        let joined = rehang(mesh, &owner, entry);
+        let joined = hung_from(mesh, &owner, entry);
         for attachment in &joined {
             owner[attachment.face.index()] = target as u32;
         }
@@ -59,7 +59,7 @@ fn flattest_exit(mesh: &SurfaceMesh, owner: &[u32], segment: &Segment) -> Option
 }
 
 /// The faces of the segment that `entry` belongs to, attached anew from `entry` on, flattest first.
-fn rehang(mesh: &SurfaceMesh, owner: &[u32], entry: HalfedgeId) -> Vec<Attachment> {
+fn hung_from(mesh: &SurfaceMesh, owner: &[u32], entry: HalfedgeId) -> Vec<Attachment> {
     let own = owner[entry.face().index()];
     let mut reached = std::collections::BTreeSet::new();
     let mut frontier = BinaryHeap::from([Reverse((0u64, entry))]);
