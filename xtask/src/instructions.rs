@@ -10,13 +10,15 @@ use crate::{Failure, in_ci, root, target};
 
 /// The jobs of `crates/core/benches/instructions/main.rs` that are compared, each with the job that does all but the
 /// stage in question: the difference is counted.
-const JOBS: [(&str, &str); 10] = [
+const JOBS: [(&str, &str); 11] = [
     ("ply-read", "ply-write"),
     ("check", "shape"),
     ("segment", "check"),
     ("unfold", "segment"),
     ("wrap", "unfold"),
     ("wrap-many", "unfold"),
+    // All stages, of another mesh.
+    ("wrap-one", "shape"),
     ("irregularity", "wrap"),
     ("equalize", "wrap"),
     ("energy", "wrap"),

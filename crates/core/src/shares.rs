@@ -7,6 +7,7 @@
 mod stays;
 mod walk;
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -18,6 +19,7 @@ use crate::halves::split_by_mass;
 use crate::ids::FaceId;
 use crate::lanes;
 use crate::mesh::SurfaceMesh;
+use crate::parallel;
 use crate::sample::SurfacePoint;
 use stays::{Candidate, Stays};
 use walk::{Table, Walk};
@@ -118,15 +120,17 @@ impl<'a> Regions<'a> {
             if along >= regions.end as f64 {
                 break;
             }
-            let reached = self.region_at(along + mass).min(regions.end - 1);
-            let mut before = (0.0, DVec3::ZERO);
-            for region in self.region_at(along)..=reached {
+            let until = |region: usize| {
                 let share = ((region as f64 + 1.0 - along) / mass.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-                let moment = walk.moment(&self.table, share);
-                if let Some(own) = region.checked_sub(regions.start) {
-                    moments[own] += (moment - before.1) * mass;
-                    masses[own] += (share - before.0) * mass;
-                }
+                (share, walk.moment(&self.table, share))
+            };
+            let start = self.region_at(along);
+            let from = start.max(regions.start);
+            let mut before = if from > start { until(from - 1) } else { (0.0, DVec3::ZERO) };
+            for region in from..=self.region_at(along + mass).min(regions.end - 1) {
+                let (share, moment) = until(region);
+                moments[region - regions.start] += (moment - before.1) * mass;
+                masses[region - regions.start] += (share - before.0) * mass;
                 before = (share, moment);
             }
         }
@@ -136,14 +140,24 @@ impl<'a> Regions<'a> {
         moments
     }
 
-    /// What was caught on some faces of the row, each with its region and how far it lies from the middle.
-    fn candidates(&self, caught: &Caught<'_>, row: Range<usize>) -> Vec<Candidate> {
+    /// What was caught on some faces of the row, each with its region and how far it lies from the middle; `middles` are
+    /// those of all regions, if they are known.
+    fn candidates(
+        &self,
+        caught: &Caught<'_>,
+        row: Range<usize>,
+        middles: Option<&[DVec3]>,
+    ) -> Vec<Candidate> {
         let parts: Vec<Part> = row.clone().map(|at| self.face(at)).collect();
         let end = self.row.get(row.end).map_or(self.count as f64, |next| next.along);
         let (first, last) = (self.region_at(self.row[row.start].along), self.region_at(end));
-        let centroids = self.centroids(first..last + 1, |at| {
-            at.checked_sub(row.start).and_then(|at| parts.get(at)).map_or_else(|| self.face(at), |part| *part)
-        });
+        let centroids = match middles {
+            Some(middles) => Cow::Borrowed(&middles[first..=last]),
+            None => Cow::Owned(self.centroids(first..last + 1, |at| {
+                let part = at.checked_sub(row.start).and_then(|at| parts.get(at));
+                part.map_or_else(|| self.face(at), |part| *part)
+            })),
+        };
         // In units of d_m, so that singles hold it.
         let unit = self.count as f64 / self.mesh.area();
         let weighed = !self.density.is_uniform();
@@ -190,6 +204,8 @@ impl<'a> Regions<'a> {
         /// Points a piece of work is to have, and regions of a bucket.
         const POINTS: usize = 8192;
         const REGIONS: usize = 8192;
+        /// Regions for each piece from which on they are not looked at as a whole before.
+        const MANY: usize = 4;
         let faces = self.row.len();
         let faces_for = |points: usize| {
             let most = points as u128 * faces as u128 / caught.count().max(1) as u128;
@@ -197,6 +213,11 @@ impl<'a> Regions<'a> {
         };
         let size = faces_for(POINTS).min(POINTS);
         let group = faces_for(together).next_multiple_of(size);
+        // Few regions reach over many pieces, each of which would look for their middles.
+        let middles = (self.count < MANY * faces.div_ceil(size)).then(|| {
+            let middle = |region: usize| self.centroids(region..region + 1, |at| self.face(at));
+            parallel::map(self.count, middle).concat()
+        });
         let buckets = self.count.div_ceil(REGIONS);
         let mut stays = Stays::new(self.count, REGIONS);
         let mut is_enough = true;
@@ -208,7 +229,9 @@ impl<'a> Regions<'a> {
             let candidates = Buckets::new(
                 1 + (end - start).div_ceil(size),
                 |piece| match piece.checked_sub(1).map(|piece| start + piece * size) {
-                    Some(start) => self.candidates(caught, start..(start + size).min(end)),
+                    Some(start) => {
+                        self.candidates(caught, start..(start + size).min(end), middles.as_deref())
+                    }
                     None => carried.clone(),
                 },
                 buckets - first,

@@ -33,6 +33,8 @@ fn main() -> Outcome {
         }
         "wrap" => drop(black_box(wrapped(&checked(&soup)?, POINTS)?)),
         "wrap-many" => drop(black_box(wrapped(&checked(&soup)?, MANY_POINTS)?)),
+        // What a region costs must not hang on how many faces it has, again and again.
+        "wrap-one" => drop(black_box(wrapped(&checked(&shapes::cube(90))?, 1)?)),
         "irregularity" => drop(black_box(wrapped(&checked(&soup)?, POINTS)?.irregularity())),
         "equalize" | "energy" | "half-space" => {
             let mesh = checked(&soup)?;

@@ -161,8 +161,10 @@ pub fn equalize(
     let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
     let centres: Vec<Place> = dues.iter().map(|due| layout.blocks[due.block as usize].centre).collect();
-    let relaxed = relax(&layout, near, start, &centres, &wanted, options.rounds, progress);
-    let sides = Sides::new(mesh, strip_of_face, density, n);
+    let (relaxed, sides) = parallel::join(
+        || relax(&layout, near, start, &centres, &wanted, options.rounds, progress),
+        || Sides::new(mesh, strip_of_face, density, n),
+    );
     let mut settled = settle(&layout, &relaxed, sides.as_ref());
     let homes = homes(&layout, &relaxed, sides.as_ref(), &mut settled);
     let cells = Cells { layout: &layout, relaxed: &relaxed, sides: sides.as_ref(), homes };

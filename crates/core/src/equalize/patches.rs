@@ -18,6 +18,9 @@ impl Patches {
     /// neighbours share the rounding.
     pub(super) fn new(mesh: &SurfaceMesh, mass: &[f64], n: usize) -> Self {
         let components = mesh.topology().components();
+        if components.count == 1 {
+            return Self { of_face: vec![Some(0); mesh.face_count()], counts: vec![n] };
+        }
         let mut moments = vec![(DVec3::ZERO, 0.0); components.count];
         let mut masses = vec![0.0; components.count];
         for face in mesh.topology().face_ids() {

@@ -6,10 +6,9 @@ use glam::DVec3;
 use super::holdings::Holdings;
 use super::layout::Layout;
 use crate::density::Density;
-use crate::ids::{FaceId, HalfedgeId, StripId};
+use crate::ids::{FaceId, StripId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
-use crate::sets::Sets;
 
 /// Neighbours whose normals are at least this far apart (squared distance; 4 sin^2(15 degrees)) meet in a crease.
 const CREASE: f64 = 0.267_949_192_431_122_7;
@@ -32,29 +31,29 @@ impl Sides {
         density: &Density,
         n: usize,
     ) -> Option<Self> {
-        let mut sets = Sets::new(mesh.face_count());
-        for face in mesh.topology().face_ids() {
-            for neighbour in smooth_neighbours(mesh, face) {
-                if strip_of_face[face.index()] == strip_of_face[neighbour.index()] {
-                    sets.join(face.0, neighbour.0);
-                }
-            }
-        }
+        let parts = mesh.topology().components_across(|side, twin| {
+            let (face, near) = (side.face(), twin.face());
+            strip_of_face[face.index()] == strip_of_face[near.index()]
+                && mesh.face_normal(face).distance_squared(mesh.face_normal(near)) < CREASE
+        });
         let masses = density.face_masses(mesh);
         let each = masses.iter().sum::<f64>() / n as f64;
-        let mut due = vec![0.0; mesh.face_count()];
-        for (face, mass) in (0..).zip(&masses) {
-            due[sets.root(face) as usize] += mass / each;
+        let mut due = vec![0.0; parts.count];
+        for (part, mass) in parts.of_face.iter().zip(&masses) {
+            due[*part as usize] += mass / each;
         }
         // The first is that of all small ones.
         let mut count = 1;
-        let mut number = vec![0; mesh.face_count()];
+        let mut number = vec![0; parts.count];
         for (number, _) in number.iter_mut().zip(&due).filter(|(_, due)| **due >= FEWEST) {
             *number = count;
             count += 1;
         }
-        let of_face: Vec<u32> =
-            (0..mesh.face_count() as u32).map(|face| number[sets.root(face) as usize]).collect();
+        if count <= 2 && due.iter().filter(|&&due| due < FEWEST).sum::<f64>() < FEWEST {
+            return None;
+        }
+        let mut of_face = parts.of_face;
+        of_face.iter_mut().for_each(|part| *part = number[*part as usize]);
         let mut normals = vec![(DVec3::ZERO, 0.0); count as usize];
         for (face, (side, mass)) in of_face.iter().zip(&masses).enumerate() {
             let sum: &mut (DVec3, f64) = &mut normals[*side as usize];
@@ -62,8 +61,7 @@ impl Sides {
         }
         let normals =
             normals.into_iter().map(|(sum, mass)| if mass > 0.0 { sum / mass } else { sum }).collect();
-        (count > 2 || due.iter().filter(|&&due| due < FEWEST).sum::<f64>() >= FEWEST)
-            .then_some(Self { of_face, normals })
+        Some(Self { of_face, normals })
     }
 
     pub(super) fn of(&self, face: FaceId) -> u32 {
@@ -88,13 +86,6 @@ impl Sides {
             |parts: &Vec<Part>| parts.iter().max_by(|a, b| a.share.total_cmp(&b.share)).map(|part| part.side);
         parts.iter().map(largest).collect()
     }
-}
-
-/// The faces beside a face that do not meet it in a crease.
-fn smooth_neighbours(mesh: &SurfaceMesh, face: FaceId) -> impl Iterator<Item = FaceId> + use<'_> {
-    (0..3)
-        .filter_map(move |corner| Some(mesh.topology().twin(HalfedgeId::of(face, corner))?.face()))
-        .filter(move |&near| mesh.face_normal(face).distance_squared(mesh.face_normal(near)) < CREASE)
 }
 
 /// What of a cell lies on a side: mass, later the share of the cell's mass, last 0 or 1.

@@ -231,19 +231,34 @@ impl Topology {
     pub fn components(&self) -> &Components {
         &self.components
     }
+
+    /// What is connected across sides for which `joins` says so; it hears each side once, as both triangles see it.
+    pub(crate) fn components_across(&self, joins: impl Fn(HalfedgeId, HalfedgeId) -> bool) -> Components {
+        Components::joined(&self.twins, joins)
+    }
 }
 
 impl Components {
+    fn new(twins: &[u32]) -> Self {
+        Self::joined(twins, |_, _| true)
+    }
+
+    /// Those that are left when triangles are joined only across sides for which `joins` says so; it hears each side once,
+    /// as both triangles see it, the later one first.
+    ///
     /// Each triangle takes the label of a neighbour before it or a new one, and labels that meet are one component. Linear
     /// time but for an inverse Ackermann function, in the order of the triangles, which is near in space as a rule.
-    fn new(twins: &[u32]) -> Self {
+    fn joined(twins: &[u32], joins: impl Fn(HalfedgeId, HalfedgeId) -> bool) -> Self {
         let mut labels = Sets::new(0);
         let mut of_face: Vec<u32> = Vec::with_capacity(twins.len() / 3);
         for face in 0..twins.len() / 3 {
             let mut label = None;
-            for twin in &twins[3 * face..3 * face + 3] {
+            for (side, &twin) in (3 * face..).zip(&twins[3 * face..3 * face + 3]) {
                 // Those that come later are not labelled yet, and borders are larger than all.
-                let Some(&other) = of_face.get(*twin as usize / 3) else { continue };
+                let Some(&other) = of_face.get(twin as usize / 3) else { continue };
+                if !joins(HalfedgeId(side as u32), HalfedgeId(twin)) {
+                    continue;
+                }
                 label =
                     Some(label.map_or(
                         other,

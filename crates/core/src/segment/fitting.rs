@@ -1,6 +1,8 @@
 //! Beyond the paper: growth that looks at the plane. The triangle that opens the least border joins first, so that what
 //! can lie together does, and cuts stay open only where the surface's curvature keeps them apart.
 
+use std::hint::black_box;
+
 use glam::DVec2;
 
 use super::frontier::{Cost, Frontier};
@@ -146,9 +148,15 @@ impl Fitting<'_> {
     }
 
     /// A face joins where it is laid: its other sides are looked at, all three if it is the first.
-    fn join(&mut self, face: FaceId, sides: impl IntoIterator<Item = usize>) {
+    fn join(&mut self, face: FaceId, sides: impl IntoIterator<Item = usize> + Clone) {
         self.state[face.index()] = State::JOINED;
         let shape = &self.shapes.of(face).0;
+        // What lies anywhere is fetched together.
+        sides
+            .clone()
+            .into_iter()
+            .filter_map(|corner| shape[corner].twin())
+            .for_each(|across| self.fetch(across));
         let corners = *self.planar.corners(face);
         for corner in sides {
             let side = &shape[corner];
@@ -170,6 +178,13 @@ impl Fitting<'_> {
             self.planar.lay(neighbour, laid);
             self.frontier.push(cost, across);
         }
+    }
+
+    /// Asks for all that will be looked at of the face behind a side, so that it is under way while other work is done.
+    #[inline]
+    fn fetch(&self, across: HalfedgeId) {
+        let [a, _, c] = self.planar.corners(across.face());
+        black_box((self.shapes.side(across).length(), a.x, c.y));
     }
 
     fn tie_of(&self, bend: f64, corners: &[DVec2; 3], widest: Option<f64>) -> f64 {

@@ -80,6 +80,38 @@ fn regions_of_a_square_are_quarters_of_quarters() {
     assert!(centroids(5..11).iter().zip(&centroids(0..16)[5..]).all(|(a, b)| a.distance(*b) < 1e-12));
 }
 
+/// Few regions of many faces: each face is looked at about once, not once for every piece of work; the middles are the same
+/// as when pieces look for them.
+#[test]
+fn few_regions_look_at_each_face_once() {
+    // One large face has most of the regions.
+    let mut soup = shapes::square(1);
+    planted::join(
+        &mut soup,
+        &planted::moved(Shape::Sphere.generate(), |p| p * 0.1 + DVec3::new(0.0, 0.0, 3.0)),
+    );
+    for mesh in [planted::mesh(&soup), planted::mesh(&shapes::cube(60))] {
+        for n in [1, 2, 7, 11] {
+            let regions = Regions::new(&mesh, &Density::UNIFORM, n);
+            let looks = std::sync::atomic::AtomicUsize::new(0);
+            let face = |at: usize| {
+                looks.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                regions.face(at)
+            };
+            let one_by_one: Vec<DVec3> = (0..n).flat_map(|r| regions.centroids(r..r + 1, face)).collect();
+            assert_eq!(one_by_one, regions.centroids(0..n, |at| regions.face(at)));
+            // Faces between two regions are in both, and one behind each is seen to be beyond.
+            assert!(looks.into_inner() <= mesh.face_count() + 2 * n);
+            with_caught(&mesh, 2000.0, |caught| {
+                let rows = 0..mesh.face_count();
+                let known = regions.candidates(caught, rows.clone(), Some(&one_by_one));
+                assert_eq!(known.len(), caught.count());
+                assert!(known == regions.candidates(caught, rows, None));
+            });
+        }
+    }
+}
+
 #[test]
 fn one_point_stays_in_each_region_and_every_component_has_its_share() {
     let mut soup = Shape::Cube.generate();

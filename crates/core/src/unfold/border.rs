@@ -112,17 +112,24 @@ impl Loops {
 
     /// What is left of the border, whose edges are given, when edges that coincide with their copies are none.
     pub(super) fn without_closed(
-        &self,
+        self,
         mesh: &SurfaceMesh,
         places: &[FacePlace],
-        edges: &[BorderEdge],
+        edges: Vec<BorderEdge>,
     ) -> (Vec<BorderEdge>, Vec<Range<usize>>) {
         let is_closed = |i: usize| {
             let edge = edges[i];
             matches!(edge.twin, Twin::SameStrip { from, to } if (from, to) == (edge.from, edge.to))
         };
-        let mut closed: Vec<_> =
-            (0..edges.len()).filter(|&i| is_closed(i)).map(|i| (edges[i].halfedge, i)).collect();
+        let closed = parallel::map_chunks(edges.len(), PIECE, |piece| {
+            let closed = piece.filter(|&i| is_closed(i)).map(|i| (edges[i].halfedge, i));
+            closed.collect::<Vec<_>>()
+        });
+        let mut closed = closed.concat();
+        if closed.is_empty() {
+            // Vertices may coincide though no edge does.
+            return (edges, self.loops);
+        }
         closed.sort_unstable();
         let copy = |i: usize| {
             let twin = mesh.topology().twin(edges[i].halfedge)?;
@@ -132,7 +139,8 @@ impl Loops {
             let side = edges[i as usize].halfedge;
             (places[side.face().index()].index, side.corner())
         };
-        let mut left: Vec<bool> = (0..edges.len()).map(|i| !is_closed(i)).collect();
+        let mut left = vec![true; edges.len()];
+        closed.iter().for_each(|edge| left[edge.1] = false);
         let mut order: Vec<u32> = Vec::with_capacity(edges.len());
         let mut loops: Vec<Range<usize>> = Vec::new();
         for first in 0..edges.len() {
@@ -148,10 +156,15 @@ impl Loops {
                 }
             }
             let around = &mut order[start..];
-            if let Some((smallest, _)) = around.iter().enumerate().min_by_key(|(_, i)| number(**i)) {
-                around.rotate_left(smallest);
-                loops.push(start..order.len());
-            }
+            // The first edge of all is the smallest; else all must be looked at, which lie anywhere.
+            let smallest = match around {
+                [] => continue,
+                [0, ..] if self.loops.len() == 1 => 0,
+                _ => (1..around.len())
+                    .fold(0, |m, k| if number(around[k]) < number(around[m]) { k } else { m }),
+            };
+            around.rotate_left(smallest);
+            loops.push(start..order.len());
         }
         loops.sort_unstable_by_key(|range| number(order[range.start]));
         let mut rest = Vec::with_capacity(order.len());

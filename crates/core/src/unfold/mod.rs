@@ -164,7 +164,7 @@ fn lay_strip(mesh: &SurfaceMesh, strip: StripId, segment: &Segment, places: &[Fa
         Some(first) => {
             planar.rename(&first);
             border::rename(&mut edges, &first);
-            border.without_closed(mesh, places, &edges)
+            border.without_closed(mesh, places, edges)
         }
     };
     let extent = lay::settle(&mut planar.vertices);
