@@ -86,7 +86,7 @@ impl<T: Copy + Send + Sync> Buckets<T> {
     }
 
     /// The same in slices.
-    pub(crate) fn runs(&self, bucket: usize) -> impl Iterator<Item = &[T]> {
+    pub(crate) fn runs(&self, bucket: usize) -> impl Iterator<Item = &[T]> + Clone {
         let runs = &self.runs[self.starts[bucket] as usize..self.starts[bucket + 1] as usize];
         runs.iter().map(|run| &self.pieces[run.piece as usize][run.start as usize..run.end as usize])
     }

@@ -7,7 +7,8 @@ use glam::DVec3;
 
 use super::laplacian::{Laplacian, Link, Solved, solve};
 use super::near::Site;
-use super::owners::Diagram;
+use super::owners::{Border, Diagram};
+use crate::parallel;
 
 /// From where mass may come when weights are fitted.
 #[derive(Clone, Copy)]
@@ -50,15 +51,25 @@ pub(super) fn weight_steps(
     wanted: &[f64],
     reach: Reach,
 ) -> Vec<Solved> {
-    let mut missing: Vec<f64> = wanted.iter().zip(&diagram.cells).map(|(w, c)| w - c.mass).collect();
-    for border in &diagram.borders {
-        let (a, b) = (border.a as usize, border.b as usize);
-        let passed =
-            border.flow * (moves[a] + moves[b]).dot(sites[b].place.position - sites[a].place.position);
-        missing[a] -= passed;
-        missing[b] += passed;
-    }
-    let links = diagram.borders.iter().map(|border| Link { rows: [border.a, border.b], flow: border.flow });
-    let laplacian = Laplacian::new(sites.len(), links, reach.screen());
+    let missing = || {
+        let mut missing: Vec<f64> = wanted.iter().zip(&diagram.cells).map(|(w, c)| w - c.mass).collect();
+        for border in &diagram.borders {
+            let (a, b) = (border.a as usize, border.b as usize);
+            let passed =
+                border.flow * (moves[a] + moves[b]).dot(sites[b].place.position - sites[a].place.position);
+            missing[a] -= passed;
+            missing[b] += passed;
+        }
+        missing
+    };
+    let laplacian = || {
+        let link = |border: &Border| Link { rows: [border.a, border.b], flow: border.flow };
+        let pieces: Vec<&[Border]> = diagram.borders.chunks(PIECE).collect();
+        Laplacian::new(sites.len(), pieces.len(), |piece| pieces[piece].iter().map(link), reach.screen())
+    };
+    let (missing, laplacian) = parallel::join(missing, laplacian);
     solve(laplacian, missing, reach.accuracy())
 }
+
+/// So many borders are looked at by one thread.
+const PIECE: usize = 1 << 13;

@@ -4,6 +4,9 @@
 //! DOI 10.1007/BF02238511, without smoothing). So what has to travel far does so on coarse levels, and the number of
 //! iterations hardly depends on the number of rows.
 
+use std::ops::Range;
+
+use crate::buckets::Buckets;
 use crate::parallel;
 use crate::sets::Sets;
 
@@ -24,34 +27,44 @@ pub(super) struct Laplacian {
     screen: Vec<f64>,
 }
 
-impl Laplacian {
-    /// Links of the same rows are added up. The diagonal is raised by the share `screen`.
-    pub(super) fn new(count: usize, links: impl Iterator<Item = Link> + Clone, screen: f64) -> Self {
-        // Counting sort of both directions by row, then equal columns are added up.
-        let mut starts = vec![0u32; count + 1];
-        for Link { rows: [a, b], .. } in links.clone() {
-            starts[a as usize + 1] += 1;
-            starts[b as usize + 1] += 1;
-        }
-        for i in 0..count {
+/// A row, a column and minus the entry there.
+type Entry = (u32, u32, f32);
+
+/// So many rows are put together by one thread.
+const ROWS: usize = 1 << 10;
+
+/// Some rows by themselves.
+struct Rows {
+    /// From the start of the first of them.
+    ends: Vec<u32>,
+    entries: Vec<(u32, f32)>,
+    diagonal: Vec<f64>,
+}
+
+impl Rows {
+    /// Entries of the same row and column are added up, in order.
+    fn new<'a>(rows: Range<usize>, all: impl Iterator<Item = &'a Entry> + Clone) -> Self {
+        // Counting sort by row, then equal columns are added up.
+        let slot = |row: u32| row as usize - rows.start;
+        let mut starts = vec![0u32; rows.len() + 1];
+        all.clone().for_each(|&(row, ..)| starts[slot(row) + 1] += 1);
+        for i in 0..rows.len() {
             starts[i + 1] += starts[i];
         }
         let mut cursor = starts.clone();
-        let mut entries = vec![(0u32, 0.0f32); starts[count] as usize];
-        for Link { rows: [a, b], flow } in links {
-            for (row, column) in [(a, b), (b, a)] {
-                let slot = &mut cursor[row as usize];
-                entries[*slot as usize] = (column, flow as f32);
-                *slot += 1;
-            }
+        let mut entries = vec![(0u32, 0.0f32); starts[rows.len()] as usize];
+        for &(row, column, flow) in all {
+            let cursor = &mut cursor[slot(row)];
+            entries[*cursor as usize] = (column, flow);
+            *cursor += 1;
         }
-        let mut ends = Vec::with_capacity(count);
-        let mut diagonal = Vec::with_capacity(count);
+        let mut ends = Vec::with_capacity(rows.len());
+        let mut diagonal = Vec::with_capacity(rows.len());
         let mut end = 0;
-        for row in 0..count {
+        for range in starts.windows(2) {
             let start = end;
             let mut sum = 0.0;
-            for from in starts[row] as usize..starts[row + 1] as usize {
+            for from in range[0] as usize..range[1] as usize {
                 let (column, flow) = entries[from];
                 sum += f64::from(flow);
                 match entries[start..end].iter_mut().find(|entry| entry.0 == column) {
@@ -66,11 +79,40 @@ impl Laplacian {
             diagonal.push(sum);
         }
         entries.truncate(end);
-        let screen: Vec<f64> = diagonal.iter().map(|sum| sum * screen).collect();
-        for (sum, screen) in diagonal.iter_mut().zip(&screen) {
-            *sum += screen;
+        Self { ends, entries, diagonal }
+    }
+}
+
+impl Laplacian {
+    /// Of links that come in pieces. Links of the same rows are added up. The diagonal is raised by the share `screen`.
+    pub(super) fn new<L: Iterator<Item = Link>>(
+        count: usize,
+        pieces: usize,
+        links: impl Fn(usize) -> L + Sync + Send,
+        screen: f64,
+    ) -> Self {
+        let both = |Link { rows: [a, b], flow }: Link| [(a, b, flow as f32), (b, a, flow as f32)];
+        let entries = |piece| links(piece).flat_map(both).collect::<Vec<Entry>>();
+        let bucket = |&(row, ..): &Entry| row as usize / ROWS;
+        let buckets = Buckets::new(pieces, entries, count.div_ceil(ROWS), bucket);
+        let rows = parallel::map(buckets.count(), |b| {
+            Rows::new(b * ROWS..count.min((b + 1) * ROWS), buckets.runs(b).flatten())
+        });
+        drop(buckets);
+        let mut all = Self {
+            ends: Vec::with_capacity(count),
+            entries: Vec::with_capacity(rows.iter().map(|rows| rows.entries.len()).sum()),
+            diagonal: Vec::with_capacity(count),
+            screen: Vec::with_capacity(count),
+        };
+        for Rows { ends, entries, diagonal } in rows {
+            let before = all.entries.len() as u32;
+            all.ends.extend(ends.into_iter().map(|end| before + end));
+            all.entries.extend(entries);
+            all.screen.extend(diagonal.iter().map(|sum| sum * screen));
+            all.diagonal.extend(diagonal.into_iter().map(|sum| sum + sum * screen));
         }
-        Self { ends, entries, diagonal, screen }
+        all
     }
 
     fn count(&self) -> usize {
@@ -125,14 +167,16 @@ impl Laplacian {
 
     /// The matrix of the sums over aggregates.
     fn coarser(&self, aggregate: &[u32], count: usize) -> Self {
-        let links = (0..self.count()).flat_map(|row| {
-            let beside = self.row(row).iter().filter(move |(column, _)| row < *column as usize);
-            beside.filter_map(move |&(column, flow)| {
-                let rows = [aggregate[row], aggregate[column as usize]];
-                (rows[0] != rows[1]).then_some(Link { rows, flow: flow.into() })
+        let links = |piece: usize| {
+            (piece * ROWS..self.count().min((piece + 1) * ROWS)).flat_map(|row| {
+                let beside = self.row(row).iter().filter(move |(column, _)| row < *column as usize);
+                beside.filter_map(move |&(column, flow)| {
+                    let rows = [aggregate[row], aggregate[column as usize]];
+                    (rows[0] != rows[1]).then_some(Link { rows, flow: flow.into() })
+                })
             })
-        });
-        let mut coarser = Self::new(count, links, 0.0);
+        };
+        let mut coarser = Self::new(count, self.count().div_ceil(ROWS), links, 0.0);
         for (screen, &into) in self.screen.iter().zip(aggregate) {
             coarser.screen[into as usize] += screen;
             coarser.diagonal[into as usize] += screen;
