@@ -33,7 +33,7 @@ fn check_whole(name: &str, mesh: &SurfaceMesh, n: usize) {
         "{name}"
     );
 
-    let options = EqualizeOptions { rounds: 3, ..EqualizeOptions::default() };
+    let options = EqualizeOptions { rounds: 3, spread_before: true, ..EqualizeOptions::default() };
     let equalized = found(mesh, &Options { equalize: Some(options), ..of_count(n) });
     check_samples(name, mesh, &equalized.strips, &equalized.domain, &equalized.samples);
     assert_eq!(equalized.samples.len(), n, "{name}");
@@ -45,7 +45,8 @@ fn check_whole(name: &str, mesh: &SurfaceMesh, n: usize) {
     );
     let report = equalized.equalize.expect("it was asked for");
     assert!(report.moved.is_finite() && report.spread_after.is_finite(), "{name}: {report:?}");
-    assert!(report.spread_after <= report.spread_before + 1e-9, "{name}: {report:?}");
+    let before = report.spread_before.expect("it was asked for");
+    assert!(report.spread_after <= before + 1e-9, "{name}: {report:?}");
 }
 
 /// What equalizing promises, on every mesh at hand and for several seeds: cells of the same area.
@@ -60,6 +61,21 @@ fn cells_of_real_meshes_are_equal() {
             let components = mesh.topology().components().count;
             let most = if components == 1 { 1e-3 } else { 0.15 };
             assert!(report.spread_after <= most, "{name}, n {n}, seed {seed}: {report:?}");
+        }
+    }
+}
+
+/// Cells as large as limbs: a step of Newton's method for their weights is too long now and then, and must be halved.
+#[test]
+fn large_cells_of_real_meshes_are_equal() {
+    for Named { name, mesh } in &real_meshes() {
+        if mesh.topology().components().count > 1 {
+            continue;
+        }
+        for seed in 1..=6 {
+            let options = Options { seed, equalize: Some(EqualizeOptions::default()), ..of_count(56) };
+            let report = found(mesh, &options).equalize.expect("it was asked for");
+            assert!(report.spread_after <= 0.005, "{name}, seed {seed}: {report:?}");
         }
     }
 }

@@ -25,8 +25,13 @@ use crate::weights::{self, Ground};
 /// Runs the command.
 pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     let WrapArgs { mesh, placing, outputs } = args;
-    let options = job::options(placing)?;
+    let mut options = job::options(placing)?;
     let outputs = WrapOutputs::new(outputs, &mesh.mesh)?;
+    // What takes time is computed only where somebody reads it.
+    let is_read = !quiet || outputs.report.is_some();
+    if let Some(equalize) = &mut options.equalize {
+        equalize.spread_before = is_read;
+    }
     let stages = Stages::new(quiet);
     let carried = outputs.points.as_ref().map_or(&Carried::Usual, |points| &points.carried);
     let input = input::read_detail(mesh, job::detail(placing, carried), &placing.only, &stages)?;
@@ -48,8 +53,7 @@ pub(crate) fn run(args: &WrapArgs, quiet: bool) -> Outcome {
     let mut taking = Taking::new(&ground, file.transpose()?, held);
     let run = ground.run_into(&stages, |block| taking.take(block, &stages))?;
     let taken = taking.finish(&stages)?;
-    // R takes as long as equalizing does, so only where somebody reads it.
-    let irregularity = (!quiet || outputs.report.is_some()).then(|| {
+    let irregularity = is_read.then(|| {
         stages.begin("irregularity", 0);
         run.irregularity()
     });
@@ -140,9 +144,10 @@ fn summary(job: Job<'_>, irregularity: Irregularity) -> Vec<String> {
         format!("corrected: {projected} projected, {removed} removed"),
     ];
     if let Some(equalize) = &run.equalize {
+        let before = equalize.spread_before.map_or(String::new(), |spread| format!("{spread:.3} before, "));
         lines.push(format!(
-            "equalized: spread of areas {:.3} before, {:.3} after; moved {:.3} mean distances",
-            equalize.spread_before, equalize.spread_after, equalize.moved
+            "equalized: spread of areas {before}{:.3} after; moved {:.3} mean distances",
+            equalize.spread_after, equalize.moved
         ));
     }
     lines

@@ -192,7 +192,7 @@ fn the_report_has_its_keys() {
 fn equalizing_is_on_and_reported() {
     let folder = Folder::with_octahedron();
     let report = folder.run("wrap octahedron.obj -n 100 --report - -q").ok().json();
-    assert_eq!(report["options"]["equalize"]["rounds"], 5);
+    assert_eq!(report["options"]["equalize"]["rounds"], 4);
     let spread = |key: &str| report["equalize"][key].as_f64().expect("a number");
     assert!(spread("spread_after") < spread("spread_before"));
     assert!(spread("moved") > 0.0);

@@ -63,18 +63,20 @@ pub use views::{Cameras, ForViews};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct EqualizeOptions {
-    /// Rounds of relaxation. More come closer to equal cells; the time is proportional. Default: 5.
+    /// Rounds of relaxation. More come closer to equal cells; the time is proportional. Default: 4.
     pub rounds: u32,
     /// What a difference of normals counts for: the length of a unit of normal, in d_m. Keeps the two sides of sheets
     /// thinner than about twice this apart; more costs evenness. Default: 0.4.
     pub bend: f64,
+    /// Whether [`EqualizeReport::spread_before`] is wanted, for the time of a round. It changes no point. Default: no.
+    pub spread_before: bool,
     /// After that, the place in its cell that serves views best; costs some evenness. Default: `None`.
     pub for_views: Option<ForViews>,
 }
 
 impl Default for EqualizeOptions {
     fn default() -> Self {
-        Self { rounds: 5, bend: 0.4, for_views: None }
+        Self { rounds: 4, bend: 0.4, spread_before: false, for_views: None }
     }
 }
 
@@ -82,8 +84,9 @@ impl Default for EqualizeOptions {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EqualizeReport {
-    /// The spread of the areas of the points' nearest-point cells before.
-    pub spread_before: f64,
+    /// The spread of the areas of the points' nearest-point cells before, where [`EqualizeOptions::spread_before`] asks for it.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub spread_before: Option<f64>,
     /// The spread of the cells' areas after.
     pub spread_after: f64,
     /// How far points moved, root mean square, in units of d_m.
@@ -121,7 +124,8 @@ pub fn equalize(
 ) -> Equalized {
     let n = points.len();
     if n == 0 {
-        let report = EqualizeReport { spread_before: 0.0, spread_after: 0.0, moved: 0.0 };
+        let spread_before = options.spread_before.then_some(0.0);
+        let report = EqualizeReport { spread_before, spread_after: 0.0, moved: 0.0 };
         return Equalized { points: Vec::new(), cells: Vec::new(), report };
     }
     let d_m = libm::sqrt(mesh.area() / n as f64);
@@ -140,10 +144,11 @@ pub fn equalize(
         };
         dues.iter().map(site).collect()
     };
-    let before = sites(&|due| places[due.point as usize]);
-    let near = Near::find(&layout, &before);
-    let nearest: Vec<f64> = diagram(&layout, &near, &before).cells.iter().map(|cell| cell.mass).collect();
-    let spread_before = spread(&nearest);
+    let nearest = || -> Vec<f64> {
+        let before = sites(&|due| places[due.point as usize]);
+        diagram(&layout, &Near::find(&layout, &before), &before).cells.iter().map(|cell| cell.mass).collect()
+    };
+    let before = options.spread_before.then(nearest);
     let start = sites(&|due| {
         let block = &layout.blocks[due.block as usize];
         let (own, centre) = (places[due.point as usize], block.centre.position);
@@ -161,6 +166,7 @@ pub fn equalize(
     let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
     let centres: Vec<Place> = dues.iter().map(|due| layout.blocks[due.block as usize].centre).collect();
+    let near = Near::find(&layout, &start);
     let (relaxed, sides) = parallel::join(
         || relax(&layout, near, start, &centres, &wanted, options.rounds, progress),
         || Sides::new(mesh, strip_of_face, density, n),
@@ -187,8 +193,12 @@ pub fn equalize(
         };
         spot.map_or(point, |spot| on_surface(mesh, &spot, scale.middle))
     };
-    if spread(&masses) > spread_before && spread(&masses) > UNEVEN {
-        return unmoved(points, &dues, nearest, spread_before, stays);
+    let spread_before = before.as_deref().map(spread);
+    if spread(&masses) > UNEVEN {
+        let nearest = before.unwrap_or_else(nearest);
+        if spread(&masses) > spread(&nearest) {
+            return unmoved(points, &dues, nearest, spread_before, stays);
+        }
     }
     let mut moved = 0.0;
     let mut result = points.to_vec();
@@ -219,16 +229,17 @@ fn unmoved(
     points: &[SurfacePoint],
     dues: &[Due],
     nearest: Vec<f64>,
-    spread: f64,
+    spread_before: Option<f64>,
     stays: impl Fn(&Due) -> SurfacePoint,
 ) -> Equalized {
+    let spread_after = spread(&nearest);
     let mut cells = vec![0.0; points.len()];
     let mut points = points.to_vec();
     for (due, mass) in dues.iter().zip(nearest) {
         cells[due.point as usize] = mass;
         points[due.point as usize] = stays(due);
     }
-    let report = EqualizeReport { spread_before: spread, spread_after: spread, moved: 0.0 };
+    let report = EqualizeReport { spread_before, spread_after, moved: 0.0 };
     Equalized { points, cells, report }
 }
 

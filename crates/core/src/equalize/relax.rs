@@ -13,7 +13,7 @@ use super::owners::{Cell, Diagram, diagram};
 use crate::progress::Progress;
 
 /// How far a point is moved beyond its cell's centroid; speeds up the approach to equal, round cells.
-const OVERSHOOT: f64 = 1.7;
+const OVERSHOOT: f64 = 1.8;
 
 /// By how much the change of a weight in one round may differ from those beside it, in squared distances of the points;
 /// keeps cells from vanishing. Long waves may be higher.
@@ -30,11 +30,11 @@ const ASTRAY: f64 = 0.1;
 const AGAIN: u32 = 1;
 
 /// Weights are settled by one more step when the cells' masses spread by at most this share of the mean, and none is off
-/// by more than [`CLOSEST`].
-const CLOSE: f64 = 0.005;
+/// by more than [`CLOSEST`]: a step squares errors, and what is left of these makes no difference to what points are for.
+const CLOSE: f64 = 0.015;
 
 /// See [`CLOSE`].
-const CLOSEST: f64 = 0.05;
+const CLOSEST: f64 = 0.2;
 
 /// The points after relaxation, with their cells.
 pub(super) struct Relaxed {
@@ -56,6 +56,7 @@ pub(super) fn relax(
     progress: &dyn Progress,
 ) -> Relaxed {
     let mut settled = false;
+    let mut last: Option<Fit> = None;
     let (mut again, mut spread) = (AGAIN, 0.0);
     // Points move in the rounds before this one.
     let (each, mut rounds) = (rounds, rounds);
@@ -64,6 +65,7 @@ pub(super) fn relax(
         if round == rounds + SETTLING && spread > ASTRAY && again > 0 {
             again -= 1;
             rounds = round + each;
+            last = None;
         }
         if settled || round == rounds + SETTLING || progress.is_cancelled() {
             break;
@@ -74,6 +76,12 @@ pub(super) fn relax(
         let worst;
         (spread, worst) = errors(&diagram, wanted);
         settled = round >= rounds && spread <= CLOSE && worst <= CLOSEST;
+        if let Some(last) = last.as_ref().filter(|last| spread > last.spread) {
+            last.halve_step(&mut sites);
+            progress.advance(1);
+            continue;
+        }
+        last = (round >= rounds).then(|| Fit::new(&sites, spread));
         let step = match round + 1 {
             r if r < rounds => OVERSHOOT,
             r if r == rounds => 1.0,
@@ -97,6 +105,25 @@ pub(super) fn relax(
     }
     let (cells, holdings) = holdings(layout, &near, &sites);
     Relaxed { sites, near, cells, holdings }
+}
+
+/// Weights, and how the masses of their cells spread.
+struct Fit {
+    weights: Vec<f64>,
+    spread: f64,
+}
+
+impl Fit {
+    fn new(sites: &[Site], spread: f64) -> Self {
+        Self { weights: sites.iter().map(|site| site.weight).collect(), spread }
+    }
+
+    /// Takes half of what was done to these weights back: a step of Newton's method that is too long makes a worse fit.
+    fn halve_step(&self, sites: &mut [Site]) {
+        for (site, weight) in sites.iter_mut().zip(&self.weights) {
+            site.weight = 0.5 * (site.weight + weight);
+        }
+    }
 }
 
 /// By how much the masses of cells are off what is wanted, as shares of it: in the root mean square, and at most.
