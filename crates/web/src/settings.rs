@@ -100,7 +100,9 @@ impl Settings {
             seed: self.seed,
             selection: if paper { Selection::Sequence } else { Selection::Regions },
             tolerance: self.tolerance,
-            equalize: self.equalizes().then(EqualizeOptions::default),
+            equalize: self
+                .equalizes()
+                .then(|| EqualizeOptions { spread_before: true, ..EqualizeOptions::default() }),
             ..Options::default()
         }
     }
@@ -183,7 +185,7 @@ mod tests {
 
     #[test]
     fn the_default_settings_are_the_librarys_default_options_equalized() {
-        let equalize = Some(EqualizeOptions::default());
+        let equalize = Some(EqualizeOptions { spread_before: true, ..EqualizeOptions::default() });
         let (ours, theirs) = (Settings::default().options(), Options { equalize, ..Options::default() });
         assert!((ours.segment.flatness_angle - theirs.segment.flatness_angle).abs() < 1e-12);
         assert_eq!(Options { segment: theirs.segment, ..ours }, theirs);

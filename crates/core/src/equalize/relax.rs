@@ -76,7 +76,7 @@ pub(super) fn relax(
         let worst;
         (spread, worst) = errors(&diagram, wanted);
         settled = round >= rounds && spread <= CLOSE && worst <= CLOSEST;
-        if let Some(last) = last.as_ref().filter(|last| spread > last.spread) {
+        if let Some(last) = last.as_ref().filter(|last| !settled && spread > last.spread) {
             last.halve_step(&mut sites);
             progress.advance(1);
             continue;
