@@ -45,6 +45,19 @@ pub(crate) fn map_pairs<A: Send, B: Send>(
     }
 }
 
+/// The result of work that asks for many cores again and again: done by one of those, it need not wake them from outside
+/// each time.
+pub(crate) fn inside<R: Send>(f: impl FnOnce() -> R + Send) -> R {
+    #[cfg(feature = "parallel")]
+    {
+        rayon::scope(|_| f())
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        f()
+    }
+}
+
 /// The results of two, side by side.
 pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     #[cfg(feature = "parallel")]

@@ -3,9 +3,10 @@
 use crate::correct::Correction;
 use crate::density::Density;
 use crate::domain::PlanarDomain;
-use crate::equalize::{EqualizeOptions, EqualizeReport, equalize};
+use crate::equalize::{Allotment, EqualizeOptions, EqualizeReport, equalize, equalize_allotted};
 use crate::irregularity::{Irregularity, irregularity};
 use crate::mesh::SurfaceMesh;
+use crate::parallel;
 use crate::progress::Progress;
 use crate::progressive::progressive;
 use crate::request::{Points, Scattered, Scattering};
@@ -312,43 +313,23 @@ fn stages<R, E: From<OptionsError>>(
     options.validate()?;
     // Extensible points are the same whatever their number, so nothing may depend on it.
     let tolerance = if options.selection == Selection::Extensible { 0.0 } else { options.tolerance };
-    let stage = |name| {
-        progress.begin(name, 1);
-        if progress.is_cancelled() { Err(OptionsError::Cancelled) } else { Ok(()) }
-    };
-    stage("segment")?;
-    let segmentation = match options.request {
-        Request::Count(n) if options.selection != Selection::Extensible => {
-            let d_m = libm::sqrt(mesh.area() / n.max(1) as f64);
-            segment_for(mesh, &options.segment, tolerance * d_m)
+    let stages = Stages { mesh, density, options, tolerance, progress };
+    let segmentation = stages.segment()?;
+    let planar;
+    let (scattered, equalized) = match &options.equalize {
+        None => {
+            planar = stages.unfold(&segmentation)?;
+            (stages.scatter(&planar)?, None)
         }
-        _ => segment(mesh, &options.segment),
+        Some(equalize) => {
+            let (equalized, report);
+            (planar, equalized, report) = parallel::inside(|| stages.equalize(&segmentation, equalize))?;
+            (equalized, Some(report))
+        }
     };
-    stage("unfold")?;
-    let strips = unfold(mesh, &segmentation);
-    let domain = PlanarDomain::lay_out(&strips);
-    stage("wrap")?;
-    let scattering = Scattering {
-        mesh,
-        density,
-        strips: &strips,
-        domain: &domain,
-        sequence: options.sequence,
-        shift: sequence::shift_of_seed(options.seed),
-        choice: options.selection.choice(options.equalize.is_some() && density.is_uniform()),
-        tolerance,
-    };
-    let Scattered { mut points, d_m } = scattering.meet(options.request)?;
-    let mut equalized = None;
-    if let Some(options) = &options.equalize {
-        stage("equalize")?;
-        let (samples, correction) = points.into_samples();
-        let (samples, report) = equalize_samples(mesh, density, &strips, &domain, samples, options, progress);
-        points = Points::Made { samples, correction };
-        equalized = Some(report);
-    }
+    let Scattered { mut points, d_m } = scattered;
     if options.order == SampleOrder::Progressive {
-        stage("order")?;
+        stages.begin("order")?;
         let (samples, correction) = points.into_samples();
         let places: Vec<_> = samples.iter().map(|s| s.point).collect();
         let samples = progressive(mesh, &places).into_iter().map(|i| samples[i]).collect();
@@ -360,28 +341,111 @@ fn stages<R, E: From<OptionsError>>(
     let samples = points.count();
     let (made, correction) = finish(points)?;
     let (equalize, tolerance) = (equalized, tolerance * d_m);
+    let Planar { strips, domain } = planar;
     let streamed = Run { segmentation, strips, domain, correction, equalize, d_m, tolerance, samples };
     Ok((streamed, made))
 }
 
-/// Equalizes samples: those that moved lie in the planar domain where their new face lies.
-fn equalize_samples(
-    mesh: &SurfaceMesh,
-    density: &Density,
-    strips: &Strips,
-    domain: &PlanarDomain,
-    samples: Vec<Sample>,
-    options: &EqualizeOptions,
-    progress: &dyn Progress,
-) -> (Vec<Sample>, EqualizeReport) {
-    let points: Vec<_> = samples.iter().map(|s| s.point).collect();
-    let strip_of_face: Vec<_> = strips.places.iter().map(|p| p.strip).collect();
-    let equalized = equalize(mesh, &points, &strip_of_face, density, options, progress);
-    let samples = equalized.points.into_iter().zip(samples).map(|(point, before)| {
-        let (strip, place) = strips.lay_point(&point);
-        // What the correction moved stays known: equalizing keeps the order of the points.
-        let origin = if before.origin == Origin::Projected { Origin::Projected } else { Origin::Equalized };
-        Sample { point, strip, place: place + domain.offsets[strip.index()], origin }
-    });
-    (samples.collect(), equalized.report)
+/// What every stage looks at.
+struct Stages<'a> {
+    mesh: &'a SurfaceMesh,
+    density: &'a Density,
+    options: &'a Options,
+    /// In units of d_m.
+    tolerance: f64,
+    progress: &'a dyn Progress,
+}
+
+/// The surface in the plane.
+struct Planar {
+    strips: Strips,
+    domain: PlanarDomain,
+}
+
+/// Up to so many triangles and so many points what equalizing allots is made while the surface is unfolded and points are
+/// scattered. Beyond it takes too much memory at that time, and a count may be one that cannot be met at all.
+const SIDE_BY_SIDE: usize = 300_000;
+
+impl<'a> Stages<'a> {
+    fn begin(&self, stage: &'static str) -> Result<(), OptionsError> {
+        self.progress.begin(stage, 1);
+        if self.progress.is_cancelled() { Err(OptionsError::Cancelled) } else { Ok(()) }
+    }
+
+    fn segment(&self) -> Result<Segmentation, OptionsError> {
+        self.begin("segment")?;
+        let Options { request, selection, segment: options, .. } = self.options;
+        Ok(match *request {
+            Request::Count(n) if *selection != Selection::Extensible => {
+                let d_m = libm::sqrt(self.mesh.area() / n.max(1) as f64);
+                segment_for(self.mesh, options, self.tolerance * d_m)
+            }
+            _ => segment(self.mesh, options),
+        })
+    }
+
+    fn unfold(&self, segmentation: &Segmentation) -> Result<Planar, OptionsError> {
+        self.begin("unfold")?;
+        let strips = unfold(self.mesh, segmentation);
+        let domain = PlanarDomain::lay_out(&strips);
+        Ok(Planar { strips, domain })
+    }
+
+    fn scatter<'b>(&self, planar: &'b Planar) -> Result<Scattered<'b>, OptionsError>
+    where
+        'a: 'b,
+    {
+        self.begin("wrap")?;
+        let Self { mesh, density, options, tolerance, .. } = *self;
+        let scattering = Scattering {
+            mesh,
+            density,
+            strips: &planar.strips,
+            domain: &planar.domain,
+            sequence: options.sequence,
+            shift: sequence::shift_of_seed(options.seed),
+            choice: options.selection.choice(options.equalize.is_some() && density.is_uniform()),
+            tolerance,
+        };
+        scattering.meet(options.request)
+    }
+
+    /// All from unfolding to equalizing.
+    fn equalize(
+        &self,
+        segmentation: &Segmentation,
+        options: &EqualizeOptions,
+    ) -> Result<(Planar, Scattered<'static>, EqualizeReport), OptionsError> {
+        let Self { mesh, density, progress, .. } = *self;
+        let scatter = || {
+            let planar = self.unfold(segmentation)?;
+            let Scattered { points, d_m } = self.scatter(&planar)?;
+            Ok::<_, OptionsError>((points.into_samples(), d_m, planar))
+        };
+        let allot = |n| Allotment::new(mesh, density, n, options);
+        let (made, allotment) = match self.options.request {
+            Request::Count(n) if (1..=SIDE_BY_SIDE).contains(&n) && mesh.face_count() <= SIDE_BY_SIDE => {
+                parallel::join(scatter, || Some(allot(n)))
+            }
+            _ => (scatter(), None),
+        };
+        let ((samples, correction), d_m, planar) = made?;
+        self.begin("equalize")?;
+        let points: Vec<_> = samples.iter().map(|s| s.point).collect();
+        let strip_of_face: Vec<_> = planar.strips.places.iter().map(|p| p.strip).collect();
+        let equalized = match allotment {
+            Some(allotment) => equalize_allotted(mesh, allotment, &points, &strip_of_face, options, progress),
+            None => equalize(mesh, &points, &strip_of_face, density, options, progress),
+        };
+        let sample = |i: usize| {
+            let (point, before) = (equalized.points[i], &samples[i]);
+            let (strip, place) = planar.strips.lay_point(&point);
+            // What the correction moved stays known: equalizing keeps the order of the points.
+            let origin =
+                if before.origin == Origin::Projected { Origin::Projected } else { Origin::Equalized };
+            Sample { point, strip, place: place + planar.domain.offsets[strip.index()], origin }
+        };
+        let samples = parallel::map(samples.len(), sample);
+        Ok((planar, Scattered { points: Points::Made { samples, correction }, d_m }, equalized.report))
+    }
 }

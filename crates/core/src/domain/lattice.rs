@@ -7,6 +7,7 @@ use glam::DVec2;
 
 use super::PlanarDomain;
 use super::bands::Bands;
+use super::occupied::Occupied;
 use crate::lanes::{LANES, Lanes};
 use crate::sequence::{self, radical_inverse};
 
@@ -28,6 +29,8 @@ pub(super) struct Lattice {
     digits: u32,
     /// The first number whose point is carried around in x.
     turn: u64,
+    /// Where any points are, if they are few.
+    occupied: Option<Occupied>,
 }
 
 impl Lattice {
@@ -51,7 +54,10 @@ impl Lattice {
                 turn = middle + 1;
             }
         }
-        Self { base, count, shift, side: domain.side, rows, height: 1.0 / exact(rows), digits, turn }
+        let (side, height) = (domain.side, 1.0 / exact(rows));
+        let mut lattice = Self { base, count, shift, side, rows, height, digits, turn, occupied: None };
+        lattice.occupied = Occupied::new(side, count, |index| lattice.place(index));
+        lattice
     }
 
     pub(super) fn count(&self) -> u64 {
@@ -117,6 +123,15 @@ impl Lattice {
         const HELD: usize = 16 * LANES;
         /// As a rule as many points as a row of a triangle has, or more.
         const TOGETHER: usize = 8;
+        // Rounding is far below these margins.
+        let margin = MARGIN * self.side;
+        if let Some(occupied) = &self.occupied {
+            let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
+            let high = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+            if !occupied.may_hold(low - margin, high + margin) {
+                return;
+            }
+        }
         let mut look = |indices: &[u64]| {
             for some in indices.chunks(LANES) {
                 let mut lanes = [some[0]; LANES];
@@ -145,8 +160,6 @@ impl Lattice {
         };
         let bands = Bands::new(corners);
         let height = self.side / exact(self.rows);
-        // Rounding is far below these margins.
-        let margin = MARGIN * self.side;
         let (first, last) = self.rows(bands.low.y, bands.high.y).into_inner();
         for row in (first..=last).step_by(LANES) {
             let mut bottoms = [0.0; LANES];

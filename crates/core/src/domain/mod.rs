@@ -4,6 +4,7 @@ mod bands;
 mod cells;
 mod lattice;
 mod listed;
+mod occupied;
 
 use glam::DVec2;
 

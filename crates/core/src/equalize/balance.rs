@@ -1,13 +1,15 @@
-//! Hierarchical balancing: surface and points are split together, again and again across the widest extent, so that
-//! mass and number of points agree on both sides; at the end every point owns a region of equal mass.
+//! Hierarchical balancing: the surface is split again and again across its widest extent, so that mass and number of points agree
+//! on both sides; at the end a region of equal mass is there for every point. Points are dealt out afterwards, by the same splits.
 
+use std::cmp::Ordering;
 use std::ops::Range;
 
 use glam::DVec3;
 
 use crate::halves::split_by_mass;
+use crate::parallel;
 
-/// A clump of clumps or a point in the space of positions and scaled normals.
+/// A clump of tiles or a point in the space of positions and scaled normals.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Item {
     pub(super) position: DVec3,
@@ -18,74 +20,119 @@ pub(super) struct Item {
 }
 
 impl Item {
-    fn coordinate(&self, axis: usize) -> f64 {
+    fn coordinate(&self, axis: u8) -> f64 {
+        let axis = usize::from(axis);
         if axis < 3 { self.position[axis] } else { self.normal[axis - 3] }
     }
 }
 
-/// A piece of the surface with the points that are due there: one, or more where it is a single clump.
+/// A piece of the surface with the number of points that are due there: one, or more where it is a single clump.
 #[derive(Clone, Debug)]
 pub(super) struct Region {
     /// Which clumps, in their new order.
     pub(super) clumps: Range<usize>,
-    /// Which points, in their new order.
-    pub(super) points: Range<usize>,
+    pub(super) points: u32,
 }
 
-/// Below this many clumps a piece is not worth another thread.
-#[cfg(feature = "parallel")]
+/// How the regions came about.
+#[derive(Clone, Copy, Debug)]
+enum Node {
+    /// What lies here was split across an axis: the lower half comes next, the upper one so many nodes farther on.
+    Split {
+        axis: u8,
+        upper: u32,
+    },
+    Region,
+}
+
+/// A patch of the surface in regions that are due the same mass for each of their points.
+#[derive(Debug, Default)]
+pub(super) struct Balanced {
+    pub(super) regions: Vec<Region>,
+    nodes: Vec<Node>,
+}
+
+/// Below this many clumps or points a piece is not worth another thread.
 const ALONE: usize = 1 << 11;
 
-/// Shares out the clumps over the points: reorders both so that each region's stand together.
-///
-/// O(clumps log points).
-pub(super) fn balance(clumps: &mut [Item], points: &mut [Item]) -> Vec<Region> {
-    let mut regions = Vec::with_capacity(points.len());
-    share(clumps, points, [0, 0], &mut regions);
-    regions
+impl Balanced {
+    /// Shares out the clumps over so many points: reorders them so that each region's stand together.
+    ///
+    /// O(clumps log points).
+    pub(super) fn new(clumps: &mut [Item], points: usize) -> Self {
+        let mut balanced = Self::default();
+        balanced.share(clumps, points, 0);
+        balanced
+    }
+
+    /// `start` says where the clumps stand in the whole.
+    fn share(&mut self, clumps: &mut [Item], points: usize, start: usize) {
+        if points < 2 || clumps.len() < 2 {
+            self.nodes.push(Node::Region);
+            self.regions.push(Region { clumps: start..start + clumps.len(), points: points as u32 });
+            return;
+        }
+        let axis = widest_axis(clumps);
+        let lower = points / 2;
+        let total: f64 = clumps.iter().map(|t| t.mass).sum();
+        let wanted = total * lower as f64 / points as f64;
+        let cut = split_by_mass(clumps, |a, b| order(a, b, axis), |clump| clump.mass, wanted);
+        let (below, above) = clumps.split_at_mut(cut);
+        let node = self.nodes.len();
+        self.nodes.push(Node::Split { axis, upper: 0 });
+        if below.len() > ALONE {
+            let mut other = Self::default();
+            parallel::join(
+                || self.share(below, lower, start),
+                || other.share(above, points - lower, start + cut),
+            );
+            self.nodes[node] = Node::Split { axis, upper: (self.nodes.len() - node) as u32 };
+            self.regions.append(&mut other.regions);
+            self.nodes.append(&mut other.nodes);
+            return;
+        }
+        self.share(below, lower, start);
+        self.nodes[node] = Node::Split { axis, upper: (self.nodes.len() - node) as u32 };
+        self.share(above, points - lower, start + cut);
+    }
+
+    /// Reorders the points so that those due in each region stand together, region after region. There are as many as
+    /// the surface was shared out over.
+    ///
+    /// O(points log points).
+    pub(super) fn deal(&self, points: &mut [Item]) {
+        deal(points, &self.nodes);
+    }
 }
 
-/// `starts` says where the two slices stand in the whole.
-fn share(clumps: &mut [Item], points: &mut [Item], starts: [usize; 2], regions: &mut Vec<Region>) {
-    if points.is_empty() {
-        return;
-    }
-    if points.len() < 2 || clumps.len() < 2 {
-        let [clump, point] = starts;
-        regions.push(Region { clumps: clump..clump + clumps.len(), points: point..point + points.len() });
-        return;
-    }
-    let axis = widest_axis(clumps);
+fn deal(points: &mut [Item], nodes: &[Node]) {
+    let Some(&Node::Split { axis, upper }) = nodes.first() else { return };
     let lower = points.len() / 2;
-    let total: f64 = clumps.iter().map(|t| t.mass).sum();
-    let order = |a: &Item, b: &Item| a.coordinate(axis).total_cmp(&b.coordinate(axis)).then(a.id.cmp(&b.id));
-    let wanted = total * lower as f64 / points.len() as f64;
-    let cut = split_by_mass(clumps, order, |clump| clump.mass, wanted);
-    points.select_nth_unstable_by(lower, order);
-    let (clumps_below, clumps_above) = clumps.split_at_mut(cut);
-    let (points_below, points_above) = points.split_at_mut(lower);
-    let behind = [starts[0] + cut, starts[1] + lower];
-    #[cfg(feature = "parallel")]
-    if clumps_below.len() > ALONE {
-        let mut above = Vec::with_capacity(points_above.len());
-        rayon::join(
-            || share(clumps_below, points_below, starts, regions),
-            || share(clumps_above, points_above, behind, &mut above),
-        );
-        regions.append(&mut above);
-        return;
+    points.select_nth_unstable_by(lower, |a, b| order(a, b, axis));
+    let (below, above) = points.split_at_mut(lower);
+    let (nodes_below, nodes_above) = (&nodes[1..upper as usize], &nodes[upper as usize..]);
+    if below.len() > ALONE {
+        parallel::join(|| deal(below, nodes_below), || deal(above, nodes_above));
+    } else {
+        deal(below, nodes_below);
+        deal(above, nodes_above);
     }
-    share(clumps_below, points_below, starts, regions);
-    share(clumps_above, points_above, behind, regions);
 }
 
-fn widest_axis(items: &[Item]) -> usize {
+fn order(a: &Item, b: &Item, axis: u8) -> Ordering {
+    a.coordinate(axis).total_cmp(&b.coordinate(axis)).then(a.id.cmp(&b.id))
+}
+
+fn widest_axis(items: &[Item]) -> u8 {
     let mut low = [DVec3::INFINITY; 2];
     let mut high = [DVec3::NEG_INFINITY; 2];
     for item in items {
         low = [low[0].min(item.position), low[1].min(item.normal)];
         high = [high[0].max(item.position), high[1].max(item.normal)];
     }
-    let extent = |axis: usize| (high[axis / 3] - low[axis / 3])[axis % 3];
+    let extent = |axis: u8| {
+        let axis = usize::from(axis);
+        (high[axis / 3] - low[axis / 3])[axis % 3]
+    };
     (0..6).fold(0, |best, axis| if extent(axis) > extent(best) { axis } else { best })
 }

@@ -53,7 +53,7 @@ pub(super) fn weight_steps(
 ) -> Vec<Solved> {
     let missing = || {
         let mut missing: Vec<f64> = wanted.iter().zip(&diagram.cells).map(|(w, c)| w - c.mass).collect();
-        for border in &diagram.borders {
+        for border in diagram.borders.iter().flatten() {
             let (a, b) = (border.a as usize, border.b as usize);
             let passed =
                 border.flow * (moves[a] + moves[b]).dot(sites[b].place.position - sites[a].place.position);
@@ -64,12 +64,9 @@ pub(super) fn weight_steps(
     };
     let laplacian = || {
         let link = |border: &Border| Link { rows: [border.a, border.b], flow: border.flow };
-        let pieces: Vec<&[Border]> = diagram.borders.chunks(PIECE).collect();
+        let pieces = &diagram.borders;
         Laplacian::new(sites.len(), pieces.len(), |piece| pieces[piece].iter().map(link), reach.screen())
     };
     let (missing, laplacian) = parallel::join(missing, laplacian);
     solve(laplacian, missing, reach.accuracy())
 }
-
-/// So many borders are looked at by one thread.
-const PIECE: usize = 1 << 13;

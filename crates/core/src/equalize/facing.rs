@@ -38,7 +38,7 @@ const FINEST: usize = 32;
 const RUNS: usize = 4;
 
 /// Sites of a piece of work.
-const SITES: usize = 512;
+const SITES: usize = 32;
 
 /// A face of its cell that a point may take.
 #[derive(Clone, Copy)]
@@ -65,21 +65,20 @@ struct Stand {
 }
 
 /// Moves points, one for each site where it has one, to other faces of their cells, each on its side. Linear in tiles.
-pub(super) fn face_evenly(mesh: &SurfaceMesh, cells: &Cells<'_>, spots: &mut [Option<Spot>]) {
+pub(super) fn face_evenly(normals: &Normals, cells: &Cells<'_>, spots: &mut [Option<Spot>]) {
     let Cells { layout, relaxed, homes, .. } = cells;
-    let normals = Normals::new(mesh);
     let choices = parallel::map_chunks(spots.len(), SITES, |sites| {
         let mut choices = Choices { ends: Vec::with_capacity(sites.len()), all: Vec::new() };
         for site in sites {
             if let Some(now) = &spots[site] {
-                list(cells, &normals, site, now, &mut choices.all);
+                list(cells, normals, site, now, &mut choices.all);
             }
             choices.ends.push(choices.all.len() as u32);
         }
         choices
     });
-    let mut stands = stands(relaxed, &normals, homes, spots);
-    let mut excess = Excess::new(layout, relaxed, &normals, &stands);
+    let mut stands = stands(relaxed, normals, homes, spots);
+    let mut excess = Excess::new(layout, relaxed, normals, &stands);
     for _ in 0..SWEEPS {
         let mut changed = false;
         for (chunk, choices) in choices.iter().enumerate() {
@@ -88,7 +87,7 @@ pub(super) fn face_evenly(mesh: &SurfaceMesh, cells: &Cells<'_>, spots: &mut [Op
                 let of_site = &choices.all[start..end as usize];
                 start = end as usize;
                 if let Some(stand) = &mut stands[site] {
-                    changed |= excess.choose(site, stand, of_site, &normals);
+                    changed |= excess.choose(site, stand, of_site, normals);
                 }
             }
         }
@@ -249,7 +248,7 @@ fn add(sum: &mut Harmonics, more: &Harmonics, times: f32) {
 }
 
 /// The normals of a mesh, rounded.
-struct Normals {
+pub(super) struct Normals {
     /// Which one each face has.
     of_face: Vec<u16>,
     all: Vec<Harmonics>,
@@ -263,7 +262,7 @@ impl Normals {
         &self.all[normal as usize]
     }
 
-    fn new(mesh: &SurfaceMesh) -> Self {
+    pub(super) fn new(mesh: &SurfaceMesh) -> Self {
         let mut of_face: Vec<u16> =
             parallel::map(mesh.face_count(), |face| square(mesh.face_normal(FaceId::new(face))));
         let mut is_there = vec![false; GRID * GRID];

@@ -360,16 +360,17 @@ impl Cycle {
 
     /// Puts the preconditioned residual into the values of the first level; gives their product.
     fn precondition(&mut self, state: &[Unknown]) -> f64 {
-        for (right, unknown) in self.levels[0].right.iter_mut().zip(state) {
-            *right = unknown.residual;
-        }
+        parallel::change_chunks(&mut self.levels[0].right, CHUNK, |first, chunk| {
+            for (right, unknown) in chunk.iter_mut().zip(&state[first..]) {
+                *right = unknown.residual;
+            }
+        });
         cycle(&mut self.levels);
         let Level { right, value, .. } = &self.levels[0];
-        right
-            .chunks(CHUNK)
-            .zip(value.chunks(CHUNK))
-            .map(|(r, v)| r.iter().zip(v).map(|(r, v)| r * v).sum::<f64>())
-            .sum()
+        let sums = parallel::map_chunks(right.len(), CHUNK, |rows| {
+            right[rows.clone()].iter().zip(&value[rows]).map(|(r, v)| r * v).sum::<f64>()
+        });
+        sums.into_iter().sum()
     }
 }
 
@@ -377,9 +378,11 @@ impl Cycle {
 fn cycle(levels: &mut [Level]) {
     let Some((level, coarser)) = levels.split_first_mut() else { return };
     let Level { matrix, right, value, .. } = level;
-    for (row, (value, right)) in value.iter_mut().zip(&*right).enumerate() {
-        *value = DAMPING * divided(*right, matrix.diagonal[row]);
-    }
+    parallel::change_chunks(value, CHUNK, |first, chunk| {
+        for (row, value) in (first..).zip(chunk) {
+            *value = DAMPING * divided(right[row], matrix.diagonal[row]);
+        }
+    });
     let Some(next) = coarser.first_mut() else {
         // Hardly more rows than a few steps reach across.
         for _ in 0..8 {
@@ -395,8 +398,10 @@ fn cycle(levels: &mut [Level]) {
     }
     cycle(coarser);
     let next = &coarser[0];
-    for (value, &from) in value.iter_mut().zip(&*aggregate) {
-        *value += RAISE * next.value[from as usize];
-    }
+    parallel::change_chunks(value, CHUNK, |first, chunk| {
+        for (value, &from) in chunk.iter_mut().zip(&aggregate[first..]) {
+            *value += RAISE * next.value[from as usize];
+        }
+    });
     level.smooth();
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::balance::{Item, balance};
+use super::balance::{Balanced, Item};
 use super::tiles::{Tile, Tiles};
 use crate::geometry::triangle;
 use crate::ids::FaceId;
@@ -81,20 +81,10 @@ impl Places {
         Self([(); 6].map(|()| Vec::with_capacity(count)))
     }
 
-    fn shrink(&mut self) {
-        self.0.iter_mut().for_each(Vec::shrink_to_fit);
-    }
-
     fn push(&mut self, place: &Place) {
         let coordinates = [place.position.to_array(), place.normal.to_array()];
         for (all, x) in self.0.iter_mut().zip(coordinates.as_flattened()) {
             all.push(*x);
-        }
-    }
-
-    fn append(&mut self, other: &mut Self) {
-        for (all, more) in self.0.iter_mut().zip(&mut other.0) {
-            all.append(more);
         }
     }
 
@@ -161,35 +151,47 @@ impl Layout {
         self.blocks.partition_point(|block| block.tiles.end <= tile as usize)
     }
 
-    /// What was laid out by itself, piece after piece.
-    fn of_pieces(pieces: Vec<Self>) -> Self {
-        // No more room than it takes: there are as many tiles as triangles.
-        let room = |of: fn(&Self) -> usize| pieces.iter().map(of).sum();
-        let mut whole = Self {
-            tiles: Vec::with_capacity(room(|piece| piece.tiles.len())),
-            places: Places::with_room(room(|piece| piece.places.len())),
-            blocks: Vec::with_capacity(room(|piece| piece.blocks.len())),
-        };
-        for piece in pieces {
-            whole.append(piece);
-        }
-        whole
+    /// Nothing yet, with room for so many tiles. They share corners: a block of ten has about as many places.
+    fn with_room(tiles: usize) -> Self {
+        let places = Places::with_room(tiles + tiles / 2);
+        Self { tiles: Vec::with_capacity(tiles), places, blocks: Vec::new() }
     }
 
-    /// Adds what was laid out by itself.
-    fn append(&mut self, mut other: Self) {
-        let (tiles, places) = (self.tiles.len(), self.places.len());
-        self.tiles.extend(other.tiles.into_iter().map(|tile| {
-            let corners = tile.corners.map(|id| id + places as u32);
-            Tile { corners, ..tile }
-        }));
-        self.places.append(&mut other.places);
-        let moved = |range: Range<usize>, by: usize| range.start + by..range.end + by;
-        self.blocks.extend(other.blocks.into_iter().map(|block| Block {
-            tiles: moved(block.tiles, tiles),
-            places: moved(block.places, places),
-            ..block
-        }));
+    /// What was laid out by itself, piece after piece.
+    fn of_pieces(pieces: &[Self]) -> Self {
+        let tiles = || {
+            let mut tiles = Vec::with_capacity(pieces.iter().map(|piece| piece.tiles.len()).sum());
+            let mut before = 0;
+            for piece in pieces {
+                let tile = |tile: &Tile| Tile { corners: tile.corners.map(|id| id + before), ..*tile };
+                tiles.extend(piece.tiles.iter().map(tile));
+                before += piece.places.len() as u32;
+            }
+            tiles
+        };
+        let blocks = || {
+            let mut blocks = Vec::with_capacity(pieces.iter().map(|piece| piece.blocks.len()).sum());
+            let (mut tiles, mut places) = (0, 0);
+            for piece in pieces {
+                let moved = |range: &Range<usize>, by: usize| range.start + by..range.end + by;
+                blocks.extend(piece.blocks.iter().map(|block| Block {
+                    tiles: moved(&block.tiles, tiles),
+                    places: moved(&block.places, places),
+                    ..block.clone()
+                }));
+                tiles += piece.tiles.len();
+                places += piece.places.len();
+            }
+            blocks
+        };
+        let axis = |axis: usize| {
+            let axes: Vec<&[f64]> = pieces.iter().map(|piece| &piece.places.0[axis][..]).collect();
+            axes.concat()
+        };
+        let (tiles, (blocks, axes)) = parallel::join(tiles, || (blocks(), parallel::map(6, axis)));
+        let mut axes = axes.into_iter();
+        let places = Places(std::array::from_fn(|_| axes.next().unwrap_or_default()));
+        Self { tiles, places, blocks }
     }
 }
 
@@ -201,46 +203,59 @@ pub(super) struct Due {
     pub(super) block: u32,
 }
 
-/// Balances clumps and points (in the order of their patches, `counts` for each); says in which block each point is
-/// due, block by block.
-pub(super) fn lay_out(tiles: Tiles, counts: &[usize], points: Vec<Item>) -> (Layout, Vec<Due>) {
-    let clumps = parallel::map(tiles.clump_count(), |id| clump(&tiles, id as u32));
-    let mut items: Vec<Vec<Item>> = vec![Vec::new(); counts.len()];
-    for item in clumps {
-        items[tiles.patch_of(item.id as usize) as usize].push(item);
-    }
-    let mut next = points.into_iter();
-    let mut order: Vec<u32> = Vec::with_capacity(tiles.clump_count());
-    let mut regions = Vec::new();
-    let mut dues = Vec::new();
-    for (mut items, &count) in items.into_iter().zip(counts) {
-        let mut points: Vec<Item> = next.by_ref().take(count).collect();
-        let start = order.len();
-        for region in balance(&mut items, &mut points) {
-            let block = regions.len() as u32;
-            dues.extend(points[region.points.clone()].iter().map(|p| Due { point: p.id, block }));
-            let members = start + region.clumps.start..start + region.clumps.end;
-            regions.push((members, region.points.len() as u32));
+/// The surface of each patch, balanced.
+pub(super) struct Splits(Vec<Balanced>);
+
+impl Splits {
+    /// Says in which block each point is due, block by block. There are as many points as the surface was laid out for, in
+    /// the order of their patches.
+    pub(super) fn dues(&self, mut points: Vec<Item>, blocks: &[Block]) -> Vec<Due> {
+        let mut rest = &mut points[..];
+        for balanced in &self.0 {
+            let count = balanced.regions.iter().map(|region| region.points as usize).sum();
+            let (of_patch, others) = rest.split_at_mut(count);
+            balanced.deal(of_patch);
+            rest = others;
         }
-        order.extend(items.iter().map(|item| item.id));
+        let blocks = (0..).zip(blocks).flat_map(|(i, block)| std::iter::repeat_n(i, block.points as usize));
+        points.iter().zip(blocks).map(|(point, block)| Due { point: point.id, block }).collect()
+    }
+}
+
+/// Balances clumps for so many points in each patch. Which points these are does not matter yet.
+pub(super) fn lay_out(tiles: Tiles, counts: &[usize]) -> (Layout, Splits) {
+    let mut clumps = parallel::map(tiles.clump_count(), |id| clump(&tiles, id as u32));
+    // Clumps are in the order of their patches, of which one without mass has none.
+    let patch_of = |clump: &Item| tiles.patch_of(clump.id as usize);
+    let mut regions = Vec::new();
+    let mut splits = Vec::with_capacity(counts.len());
+    let (mut rest, mut start) = (&mut clumps[..], 0);
+    for (patch, &count) in (0..).zip(counts) {
+        let own = rest.partition_point(|clump| patch_of(clump) == patch);
+        let (of_patch, others) = rest.split_at_mut(own);
+        let balanced = Balanced::new(of_patch, count);
+        let members = |clumps: &Range<usize>| start + clumps.start..start + clumps.end;
+        regions.extend(balanced.regions.iter().map(|region| (members(&region.clumps), region.points)));
+        splits.push(balanced);
+        start += own;
+        rest = others;
     }
     // Each piece has a table of all places, so there are few.
     let chunk = regions.len().div_ceil(16);
     let pieces = parallel::map_chunks(regions.len(), chunk, |range| {
-        let mut layout = Layout::default();
         let mut numbers = Numbers { of_place: vec![0; tiles.places.len()], given: 0 };
         let count = |(members, _): &(Range<usize>, u32)| -> usize {
-            order[members.clone()].iter().map(|&clump| tiles.clump_len(clump as usize)).sum()
+            clumps[members.clone()].iter().map(|clump| tiles.clump_len(clump.id as usize)).sum()
         };
-        layout.tiles.reserve_exact(regions[range.clone()].iter().map(count).sum());
+        let room = regions[range.clone()].iter().map(count).sum();
+        let mut layout = Layout::with_room(room);
         for (members, points) in &regions[range] {
-            block(&tiles, &order[members.clone()], *points, &mut numbers, &mut layout);
+            block(&tiles, &clumps[members.clone()], *points, &mut numbers, &mut layout);
         }
-        layout.places.shrink();
         layout
     });
     drop(tiles);
-    (Layout::of_pieces(pieces), dues)
+    (Layout::of_pieces(&pieces), Splits(splits))
 }
 
 /// The mean place of a tile.
@@ -287,9 +302,9 @@ impl Numbers {
 }
 
 /// Adds a block with the tiles of these clumps.
-fn block(all: &Tiles, clumps: &[u32], points: u32, numbers: &mut Numbers, layout: &mut Layout) {
+fn block(all: &Tiles, clumps: &[Item], points: u32, numbers: &mut Numbers, layout: &mut Layout) {
     let (first_tile, first_place) = (layout.tiles.len(), layout.places.len());
-    layout.tiles.extend(clumps.iter().flat_map(|&id| all.clump(id as usize)));
+    layout.tiles.extend(clumps.iter().flat_map(|clump| all.clump(clump.id as usize)));
     let tiles = &mut layout.tiles[first_tile..];
     let (mut low, mut high) = ([DVec3::INFINITY; 2], [DVec3::NEG_INFINITY; 2]);
     let (mut mass, mut area) = (0.0, 0.0);
@@ -323,7 +338,7 @@ fn block(all: &Tiles, clumps: &[u32], points: u32, numbers: &mut Numbers, layout
         places: first_place..layout.places.len(),
         bounds: Bounds::between(low, high),
         centre: nearest.filter(|place| aside(place) > distance * distance).unwrap_or(mean),
-        patch: all.patch_of(clumps[0] as usize),
+        patch: all.patch_of(clumps[0].id as usize),
         points,
         distance,
     };

@@ -45,8 +45,8 @@ use crate::progress::Progress;
 use crate::sample::SurfacePoint;
 use balance::Item;
 use energy::homes;
-use facing::face_evenly;
-use layout::{Due, Place, lay_out};
+use facing::{Normals, face_evenly};
+use layout::{Due, Layout, Place, Splits, lay_out};
 use near::{Near, Site};
 use owners::diagram;
 use patches::Patches;
@@ -110,6 +110,39 @@ const UNEVEN: f64 = 0.1;
 /// A point nearer than this many d_m to the centre of the block where it is due starts from where it is.
 const KEEP: f64 = 0.4;
 
+/// A surface allotted to a number of points: what does not depend on where these are, so that they can be made at
+/// the same time.
+pub(crate) struct Allotment<'a> {
+    scale: Scale<'a>,
+    patches: Patches,
+    layout: Layout,
+    splits: Splits,
+    /// The mass that each point of a patch is to stand for.
+    share: Vec<f64>,
+    normals: Normals,
+}
+
+impl<'a> Allotment<'a> {
+    /// For `n` points, at least one. O((F + n) log n).
+    pub(crate) fn new(mesh: &SurfaceMesh, density: &'a Density, n: usize, options: &EqualizeOptions) -> Self {
+        let d_m = libm::sqrt(mesh.area() / n as f64);
+        let (low, high) = mesh.bounds();
+        let scale = Scale { density, d_m, bend: options.bend, middle: (low + high) * 0.5 };
+        let patches = Patches::new(mesh, &density.face_masses(mesh), n);
+        let (layout, splits) = lay_out(tiles(mesh, &patches.of_face, &scale), &patches.counts);
+        let mut share = vec![0.0; patches.counts.len()];
+        for block in &layout.blocks {
+            for tile in &layout.tiles[block.tiles.clone()] {
+                share[block.patch as usize] += tile.mass;
+            }
+        }
+        for (share, &count) in share.iter_mut().zip(&patches.counts) {
+            *share /= count as f64;
+        }
+        Self { scale, patches, layout, splits, share, normals: Normals::new(mesh) }
+    }
+}
+
 /// Moves points along the surface until each stands for the same mass: area times density. `strip_of_face` says which
 /// segment each face belongs to. Hears cancellation between rounds.
 ///
@@ -122,31 +155,40 @@ pub fn equalize(
     options: &EqualizeOptions,
     progress: &dyn Progress,
 ) -> Equalized {
-    let n = points.len();
-    if n == 0 {
+    if points.is_empty() {
         let spread_before = options.spread_before.then_some(0.0);
         let report = EqualizeReport { spread_before, spread_after: 0.0, moved: 0.0 };
         return Equalized { points: Vec::new(), cells: Vec::new(), report };
     }
-    let d_m = libm::sqrt(mesh.area() / n as f64);
-    let (low, high) = mesh.bounds();
-    let scale = Scale { density, d_m, bend: options.bend, middle: (low + high) * 0.5 };
-    let patches = Patches::new(mesh, &density.face_masses(mesh), n);
+    let allotment = Allotment::new(mesh, density, points.len(), options);
+    equalize_allotted(mesh, allotment, points, strip_of_face, options, progress)
+}
+
+/// As [`equalize`], with what was allotted to as many points by the same options.
+pub(crate) fn equalize_allotted(
+    mesh: &SurfaceMesh,
+    allotment: Allotment<'_>,
+    points: &[SurfacePoint],
+    strip_of_face: &[StripId],
+    options: &EqualizeOptions,
+    progress: &dyn Progress,
+) -> Equalized {
+    let n = points.len();
+    let Allotment { scale, patches, layout, splits, share, normals } = &allotment;
+    let Scale { density, d_m, .. } = *scale;
     let places: Vec<DVec3> = parallel::map(n, |i| mesh.locate(&points[i]) - scale.middle);
-    let tiles = tiles(mesh, &patches.of_face, &scale);
-    let items = items(mesh, &patches, points, &places, options.bend * d_m);
-    let (layout, dues) = lay_out(tiles, &patches.counts, items);
-    let sites = |at: &dyn Fn(&Due) -> DVec3| -> Vec<Site> {
+    let dues = splits.dues(items(mesh, patches, points, &places, options.bend * d_m), &layout.blocks);
+    let sites = |at: &(dyn Fn(&Due) -> DVec3 + Sync)| -> Vec<Site> {
         let site = |due: &Due| {
             let block = &layout.blocks[due.block as usize];
             let place = Place { position: at(due), ..block.centre };
             Site { place, weight: 0.0, patch: block.patch, distance: block.distance }
         };
-        dues.iter().map(site).collect()
+        parallel::map(dues.len(), |i| site(&dues[i]))
     };
     let nearest = || -> Vec<f64> {
         let before = sites(&|due| places[due.point as usize]);
-        diagram(&layout, &Near::find(&layout, &before), &before).cells.iter().map(|cell| cell.mass).collect()
+        diagram(layout, &Near::find(layout, &before), &before).cells.iter().map(|cell| cell.mass).collect()
     };
     let before = options.spread_before.then(nearest);
     let start = sites(&|due| {
@@ -157,24 +199,17 @@ pub fn equalize(
         let stays = own.distance(centre) <= KEEP * block.distance || block.points > 1;
         if stays { own } else { centre }
     });
-    let mut patch_mass = vec![0.0; patches.counts.len()];
-    for block in &layout.blocks {
-        for tile in &layout.tiles[block.tiles.clone()] {
-            patch_mass[block.patch as usize] += tile.mass;
-        }
-    }
-    let share: Vec<f64> = patch_mass.iter().zip(&patches.counts).map(|(m, &k)| m / k as f64).collect();
     let wanted: Vec<f64> = start.iter().map(|site| share[site.patch as usize]).collect();
     let centres: Vec<Place> = dues.iter().map(|due| layout.blocks[due.block as usize].centre).collect();
-    let near = Near::find(&layout, &start);
+    let near = Near::find(layout, &start);
     let (relaxed, sides) = parallel::join(
-        || relax(&layout, near, start, &centres, &wanted, options.rounds, progress),
+        || relax(layout, near, start, &centres, &wanted, options.rounds, progress),
         || Sides::new(mesh, strip_of_face, density, n),
     );
-    let mut settled = settle(&layout, &relaxed, sides.as_ref());
-    let homes = homes(&layout, &relaxed, sides.as_ref(), &mut settled);
-    let cells = Cells { layout: &layout, relaxed: &relaxed, sides: sides.as_ref(), homes };
-    face_evenly(mesh, &cells, &mut settled);
+    let mut settled = settle(layout, &relaxed, sides.as_ref());
+    let homes = homes(layout, &relaxed, sides.as_ref(), &mut settled);
+    let cells = Cells { layout, relaxed: &relaxed, sides: sides.as_ref(), homes };
+    face_evenly(normals, &cells, &mut settled);
     spacing::make_way(&cells, &mut settled);
     if let Some(options) = &options.for_views {
         views::choose(mesh, scale.middle, &cells, &mut settled, options, progress);
@@ -200,14 +235,17 @@ pub fn equalize(
             return unmoved(points, &dues, nearest, spread_before, stays);
         }
     }
+    let places_now = parallel::map(n, |i| {
+        let point = settled[i].map_or_else(|| stays(&dues[i]), |spot| on_surface(mesh, &spot, scale.middle));
+        (point, mesh.locate(&point) - scale.middle)
+    });
     let mut moved = 0.0;
     let mut result = points.to_vec();
     let mut cells = vec![0.0; n];
-    for ((due, place), cell) in dues.iter().zip(settled).zip(&relaxed.cells) {
+    for ((due, (point, place)), mass) in dues.iter().zip(places_now).zip(masses) {
         let slot = due.point as usize;
-        cells[slot] = cell.mass;
-        let point = place.map_or_else(|| stays(due), |spot| on_surface(mesh, &spot, scale.middle));
-        moved += (mesh.locate(&point) - scale.middle).distance_squared(places[slot]);
+        cells[slot] = mass;
+        moved += place.distance_squared(places[slot]);
         result[slot] = point;
     }
     let report = EqualizeReport {

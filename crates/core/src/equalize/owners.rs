@@ -39,21 +39,22 @@ pub(super) struct Border {
 /// All cells and their shared borders; a pair of cells may occur once for every block that it shares.
 pub(super) struct Diagram {
     pub(super) cells: Vec<Cell>,
-    pub(super) borders: Vec<Border>,
+    /// In pieces.
+    pub(super) borders: Vec<Vec<Border>>,
 }
 
 /// Computes the cells. Linear in the tiles times the sites near them.
 pub(super) fn diagram(layout: &Layout, near: &Near, sites: &[Site]) -> Diagram {
     let pieces = walk(layout, near, sites, Sums::default);
     let mut cells = vec![Cell::default(); sites.len()];
-    let mut borders = Vec::with_capacity(pieces.iter().map(|p| p.borders.len()).sum());
+    let mut borders = Vec::with_capacity(pieces.len());
     for piece in pieces {
         for (site, part) in piece.parts {
             let cell = &mut cells[site as usize];
             cell.mass += part.mass;
             cell.add(part.moment);
         }
-        borders.extend(piece.borders);
+        borders.push(piece.borders);
     }
     Diagram { cells, borders }
 }

@@ -10,6 +10,7 @@ use super::holdings::{Holdings, holdings};
 use super::layout::{Layout, Place};
 use super::near::{Near, Runs, Site};
 use super::owners::{Cell, Diagram, diagram};
+use crate::parallel;
 use crate::progress::Progress;
 
 /// How far a point is moved beyond its cell's centroid; speeds up the approach to equal, round cells.
@@ -35,6 +36,9 @@ const CLOSE: f64 = 0.015;
 
 /// See [`CLOSE`].
 const CLOSEST: f64 = 0.2;
+
+/// So many sites are moved by one thread.
+const CHUNK: usize = 1 << 12;
 
 /// The points after relaxation, with their cells.
 pub(super) struct Relaxed {
@@ -90,16 +94,19 @@ pub(super) fn relax(
         let reach =
             if round + 1 < rounds { Reach::Near } else { Reach::Far { round: round.saturating_sub(rounds) } };
         let moves: Vec<DVec3> =
-            sites.iter().zip(&diagram.cells).map(|(s, c)| to_centroid(s, c) * step).collect();
+            parallel::map(sites.len(), |i| to_centroid(&sites[i], &diagram.cells[i]) * step);
         let steps = weight_steps(&diagram, &sites, &moves, wanted, reach);
-        for (((site, cell), by), step) in sites.iter_mut().zip(&diagram.cells).zip(&moves).zip(&steps) {
-            let most = MOST_STEP * site.distance * site.distance;
-            site.place.position += *by;
-            site.weight += step.beside + (step.value - step.beside).clamp(-most, most);
-            if round < rounds && cell.mass > 0.0 {
-                site.place.normal = cell.moment.normal / cell.mass;
+        parallel::change_chunks(&mut sites, CHUNK, |first, chunk| {
+            for (i, site) in (first..).zip(chunk) {
+                let (cell, step) = (&diagram.cells[i], &steps[i]);
+                let most = MOST_STEP * site.distance * site.distance;
+                site.place.position += moves[i];
+                site.weight += step.beside + (step.value - step.beside).clamp(-most, most);
+                if round < rounds && cell.mass > 0.0 {
+                    site.place.normal = cell.moment.normal / cell.mass;
+                }
             }
-        }
+        });
         regain(&mut sites, homes, &diagram, wanted, round < rounds);
         progress.advance(1);
     }
