@@ -83,12 +83,12 @@ pub(super) fn homes(
     };
     // Where each may stand, because it is looked at again and again; unless that takes too much memory.
     let ready = (layout.tiles.len() <= READY)
-        .then(|| parallel::map(standing.len(), |i| grounds(i).collect::<Vec<Ground>>()));
+        .then(|| parallel::map(standing.len(), |i| Standings::new(grounds(i).collect())));
     let step = |i: usize, from: DVec3, slope: DVec3| {
         let by = (slope * (STEP * distance(i))).clamp_length_max(FARTHEST * distance(i));
         let wanted = from / unit - by;
         let spot = match &ready {
-            Some(ready) => nearest(ready[i].iter().copied(), wanted),
+            Some(ready) => ready[i].nearest(wanted),
             None => nearest(grounds(i), wanted),
         }?;
         Some((spot.place * unit, spot))
@@ -111,6 +111,39 @@ pub(super) fn homes(
         homes[*site] = field.point(i) / unit;
     }
     homes
+}
+
+/// Tiles on which one point may stand, with balls that hold them.
+struct Standings {
+    grounds: Vec<Ground>,
+    balls: Vec<(DVec3, f64)>,
+}
+
+impl Standings {
+    fn new(grounds: Vec<Ground>) -> Self {
+        let ball = |&Ground { corners, .. }: &Ground| {
+            let middle = corners.iter().sum::<DVec3>() / 3.0;
+            let far = corners.iter().map(|corner| corner.distance_squared(middle)).fold(0.0, f64::max);
+            (middle, far.sqrt())
+        };
+        let balls = grounds.iter().map(ball).collect();
+        Self { grounds, balls }
+    }
+
+    /// As [`nearest`], of these tiles.
+    fn nearest(&self, wanted: DVec3) -> Option<Spot> {
+        // Some place of a tile is no farther than its middle, so what lies beyond that need not be looked at. Rounding is far
+        // below this margin.
+        const MARGIN: f64 = 1.0 + 1e-9;
+        let squares = || self.balls.iter().map(|(middle, _)| middle.distance_squared(wanted));
+        let reach = squares().fold(f64::INFINITY, f64::min).sqrt();
+        let may_be = |(square, (_, radius)): &(f64, &(DVec3, f64))| {
+            let reach = (reach + radius) * MARGIN;
+            *square <= reach * reach
+        };
+        let near = squares().zip(&self.balls).enumerate().filter(|(_, ball)| may_be(ball));
+        nearest(near.map(|(k, _)| self.grounds[k]), wanted)
+    }
 }
 
 /// Of the cells of those that stand.

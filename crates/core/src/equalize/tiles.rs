@@ -170,11 +170,11 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
                     if mass <= 0.0 {
                         return None;
                     }
-                    let halvings = libm::log2(density.max(1.0)) * 0.5;
-                    let side = CLUMP * scale.d_m * libm::exp2(-libm::floor(halvings));
+                    let halvings = halvings(density);
+                    let side = CLUMP * scale.d_m * libm::exp2(-f64::from(halvings));
                     let cube = cell_key((a + b + c) / 3.0 + from_low, side.max(smallest));
                     let tile = Tile { corners: corners.map(|c| c.id), face, mass };
-                    Some(((patch, halvings as u32, cube), tile))
+                    Some(((patch, halvings, cube), tile))
                 },
                 shared,
             );
@@ -203,6 +203,11 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
     let clumps = clumps.collect();
     let order = keys.into_iter().map(|(_, tile)| tile).collect();
     Tiles { places, tiles, order, clumps }
+}
+
+/// How often the cubes of clumps are halved where the density is so many times the mean.
+fn halvings(density: f64) -> u32 {
+    if density > 1.0 { (libm::log2(density) * 0.5) as u32 } else { 0 }
 }
 
 #[derive(Clone, Copy)]

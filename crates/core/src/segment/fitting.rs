@@ -1,8 +1,6 @@
 //! Beyond the paper: growth that looks at the plane. The triangle that opens the least border joins first, so that what
 //! can lie together does, and cuts stay open only where the surface's curvature keeps them apart.
 
-use std::hint::black_box;
-
 use glam::DVec2;
 
 use super::frontier::{Cost, Frontier};
@@ -125,6 +123,7 @@ impl Fitting<'_> {
             if !state.is_free() {
                 continue;
             }
+            self.frontier.soon(|side| self.fetch(side.face()));
             // What it costs stays true while nothing else is tried.
             let known = state.tried() == across.corner();
             if !known {
@@ -156,7 +155,7 @@ impl Fitting<'_> {
             .clone()
             .into_iter()
             .filter_map(|corner| shape[corner].twin())
-            .for_each(|across| self.fetch(across));
+            .for_each(|across| self.fetch(across.face()));
         let corners = *self.planar.corners(face);
         for corner in sides {
             let side = &shape[corner];
@@ -180,11 +179,11 @@ impl Fitting<'_> {
         }
     }
 
-    /// Asks for all that will be looked at of the face behind a side, so that it is under way while other work is done.
+    /// Asks for all that will be looked at of a face.
     #[inline]
-    fn fetch(&self, across: HalfedgeId) {
-        let [a, _, c] = self.planar.corners(across.face());
-        black_box((self.shapes.side(across).length(), a.x, c.y));
+    fn fetch(&self, face: FaceId) {
+        self.shapes.fetch(face);
+        self.planar.fetch(face);
     }
 
     fn tie_of(&self, bend: f64, corners: &[DVec2; 3], widest: Option<f64>) -> f64 {

@@ -104,6 +104,17 @@ impl Frontier {
         }
     }
 
+    /// What is likely to be popped soon: the cheapest, and some of the next where those open nothing.
+    #[inline]
+    pub(super) fn soon(&self, mut see: impl FnMut(HalfedgeId)) {
+        const SOON: usize = 3;
+        self.free.0.first().into_iter().for_each(|&item| see(HalfedgeId(item)));
+        self.closing.0.iter().take(SOON).for_each(|&item| see(HalfedgeId(item as u32)));
+        if self.closing.0.is_empty() {
+            self.opening.0.iter().take(SOON).for_each(|&item| see(HalfedgeId(item as u32)));
+        }
+    }
+
     /// The cheapest.
     #[inline]
     pub(super) fn pop(&mut self) -> Option<(Cost, HalfedgeId)> {

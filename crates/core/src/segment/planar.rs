@@ -3,6 +3,7 @@
 use std::num::NonZero;
 
 use glam::{DVec2, DVec3};
+use prefetch_index::prefetch_index;
 
 use super::Segmentation;
 use crate::ids::{FaceId, HalfedgeId};
@@ -131,6 +132,12 @@ impl Shapes {
         &self.of_face[face.index()]
     }
 
+    /// Asks for what is known of a face, so that it is under way while other work is done.
+    #[inline]
+    pub(super) fn fetch(&self, face: FaceId) {
+        prefetch_index(&self.of_face, face.index());
+    }
+
     #[inline]
     pub(super) fn side(&self, side: HalfedgeId) -> &Side {
         &self.of(side.face()).0[side.corner()]
@@ -170,6 +177,14 @@ impl Planar {
     #[inline]
     pub(super) fn lay(&mut self, face: FaceId, corners: [DVec2; 3]) {
         self.corners[face.index()] = corners;
+    }
+
+    /// Asks for where a face lies, so that it is under way while other work is done.
+    #[inline]
+    pub(super) fn fetch(&self, face: FaceId) {
+        // The next one starts in the line of the cache in which this one ends, or behind it.
+        prefetch_index(&self.corners, face.index());
+        prefetch_index(&self.corners, face.index() + 1);
     }
 
     #[inline]
