@@ -1,6 +1,7 @@
 //! The checked surface: triangles with positive area, joined across their edges. Immutable.
 
 use glam::DVec3;
+use prefetch_index::prefetch_index;
 
 use crate::geometry::triangle;
 use crate::ids::{FaceId, HalfedgeId, PolygonId, VertexId};
@@ -109,6 +110,15 @@ impl SurfaceMesh {
     #[inline]
     pub fn position(&self, vertex: VertexId) -> DVec3 {
         self.positions[vertex.index()]
+    }
+
+    /// Asks for the area of a face and the positions of its corners, so that they are under way while other work is done.
+    #[inline]
+    pub(crate) fn fetch(&self, face: FaceId) {
+        prefetch_index(&self.areas, face.index());
+        for vertex in self.topology.corners(face) {
+            prefetch_index(&self.positions, vertex.index());
+        }
     }
 
     /// The positions of a face's corners.

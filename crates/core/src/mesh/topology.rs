@@ -1,5 +1,7 @@
 //! Which triangle lies beside which: half-edges, no positions and no floating point numbers.
 
+use prefetch_index::prefetch_index;
+
 use crate::ids::{FaceId, HalfedgeId, VertexId};
 use crate::sets::Sets;
 
@@ -200,6 +202,18 @@ impl Topology {
     #[inline]
     pub fn corners(&self, face: FaceId) -> [VertexId; 3] {
         self.faces[face.index()]
+    }
+
+    /// Asks for the corners of a face, so that they are under way while other work is done.
+    #[inline]
+    pub(crate) fn fetch_corners(&self, face: FaceId) {
+        prefetch_index(&self.faces, face.index());
+    }
+
+    /// Asks for the twin of a half-edge, so that it is under way while other work is done.
+    #[inline]
+    pub(crate) fn fetch_twin(&self, halfedge: HalfedgeId) {
+        prefetch_index(&self.twins, halfedge.index());
     }
 
     /// The same edge as the neighbouring triangle sees it, in the other direction; `None` at the border.

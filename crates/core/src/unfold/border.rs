@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use super::lay::{Links, NEXT, Planar, first_corner};
+use prefetch_index::prefetch_index;
+
+use super::lay::{AHEAD, Links, NEXT, Planar, first_corner};
 use super::{BorderEdge, FacePlace, Twin};
 use crate::ids::{HalfedgeId, StripId};
 use crate::mesh::SurfaceMesh;
@@ -94,7 +96,16 @@ impl Loops {
         places: &[FacePlace],
         planar: &Planar,
     ) -> Vec<BorderEdge> {
+        let side = |i: usize| self.steps.get(i).map(|step| step.side);
+        let place = |side: HalfedgeId| Some(places[mesh.topology().twin(side)?.face().index()]);
         parallel::map(self.steps.len(), |i| {
+            side(i + 3 * AHEAD).into_iter().for_each(|side| mesh.topology().fetch_twin(side));
+            if let Some(twin) = side(i + 2 * AHEAD).and_then(|side| mesh.topology().twin(side)) {
+                prefetch_index(places, twin.face().index());
+            }
+            if let Some(place) = side(i + AHEAD).and_then(place) {
+                prefetch_index(&planar.corners, place.index as usize);
+            }
             let Step { side, from } = self.steps[i];
             let to = self.steps[self.next(i)].from;
             let twin = mesh.topology().twin(side).map_or(Twin::MeshBorder, |twin| {

@@ -5,6 +5,7 @@ use std::num::NonZero;
 use std::ops::Range;
 
 use glam::{DMat2, DVec2};
+use prefetch_index::prefetch_index;
 
 use super::FacePlace;
 use crate::geometry::triangle;
@@ -12,6 +13,9 @@ use crate::ids::{FaceId, HalfedgeId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::segment::{Attachment, Segment};
+
+/// What lies anywhere is asked for so many steps before it is looked at.
+pub(super) const AHEAD: usize = 8;
 
 /// The corner after each of a triangle.
 pub(super) const NEXT: [usize; 3] = [1, 2, 0];
@@ -50,7 +54,12 @@ pub(super) struct Links(Vec<Option<NonZero<u32>>>);
 impl Links {
     pub(super) fn new(mesh: &SurfaceMesh, segment: &Segment, places: &[FacePlace]) -> Self {
         let attachments = &segment.attachments[..];
+        let across = |i: usize| attachments.get(i)?.across;
         let link = |i: usize| {
+            across(i + 2 * AHEAD).into_iter().for_each(|side| mesh.topology().fetch_twin(side));
+            if let Some(twin) = across(i + AHEAD).and_then(|side| mesh.topology().twin(side)) {
+                prefetch_index(places, twin.face().index());
+            }
             let twin = mesh.topology().twin(attachments[i].across?)?;
             // One more than its number, which needs no room to say that there is none.
             NonZero::new(3 * places[twin.face().index()].index + twin.corner() as u32 + 1)
@@ -104,7 +113,13 @@ pub(super) fn lay(mesh: &SurfaceMesh, segment: &Segment, links: &Links) -> Plana
     const PIECE: usize = 1 << 13;
     let piece = |start: usize| start..(start + PIECE).min(count);
     let shapes = |piece: Range<usize>| {
-        let shape = |i: usize| Shape::new(mesh, &attachments[piece.start + i]);
+        let shape = |i: usize| {
+            let i = piece.start + i;
+            // Triangles of a segment follow each other as they joined, so they lie anywhere.
+            attachments.get(i + 2 * AHEAD).into_iter().for_each(|a| mesh.topology().fetch_corners(a.face));
+            attachments.get(i + AHEAD).into_iter().for_each(|a| mesh.fetch(a.face));
+            Shape::new(mesh, &attachments[i])
+        };
         parallel::map(piece.len(), shape)
     };
     let mut next = shapes(piece(0));
