@@ -158,40 +158,46 @@ impl Layout {
     }
 
     /// What was laid out by itself, piece after piece.
-    fn of_pieces(pieces: &[Self]) -> Self {
-        let tiles = || {
-            let mut tiles = Vec::with_capacity(pieces.iter().map(|piece| piece.tiles.len()).sum());
-            let mut before = 0;
-            for piece in pieces {
-                let tile = |tile: &Tile| Tile { corners: tile.corners.map(|id| id + before), ..*tile };
-                tiles.extend(piece.tiles.iter().map(tile));
-                before += piece.places.len() as u32;
+    fn of_pieces(pieces: Vec<Self>) -> Self {
+        let before = |of: fn(&Self) -> usize| -> Vec<usize> {
+            let start = |sum: &mut usize, piece: &Self| Some(std::mem::replace(sum, *sum + of(piece)));
+            pieces.iter().scan(0, start).collect()
+        };
+        let first_tiles = before(|piece| piece.tiles.len());
+        let first_places = before(|piece| piece.places.len());
+        let (mut tiles, mut blocks) = (Vec::new(), Vec::new());
+        let mut axes = [(); 6].map(|()| (Vec::new(), Vec::new()));
+        for piece in pieces {
+            tiles.push(piece.tiles);
+            blocks.push(piece.blocks);
+            axes.iter_mut().zip(piece.places.0).for_each(|(axis, of_piece)| axis.0.push(of_piece));
+        }
+        // By value, so that never all is there twice.
+        let all_tiles = || {
+            let mut all = Vec::with_capacity(tiles.iter().map(Vec::len).sum());
+            for (tiles, &by) in tiles.into_iter().zip(&first_places) {
+                let moved = |tile: Tile| Tile { corners: tile.corners.map(|id| id + by as u32), ..tile };
+                all.extend(tiles.into_iter().map(moved));
             }
-            tiles
+            all
         };
-        let blocks = || {
-            let mut blocks = Vec::with_capacity(pieces.iter().map(|piece| piece.blocks.len()).sum());
-            let (mut tiles, mut places) = (0, 0);
-            for piece in pieces {
-                let moved = |range: &Range<usize>, by: usize| range.start + by..range.end + by;
-                blocks.extend(piece.blocks.iter().map(|block| Block {
-                    tiles: moved(&block.tiles, tiles),
-                    places: moved(&block.places, places),
-                    ..block.clone()
-                }));
-                tiles += piece.tiles.len();
-                places += piece.places.len();
-            }
-            blocks
+        let all_places = || {
+            parallel::change_chunks(&mut axes, 1, |_, axes| {
+                axes.iter_mut().for_each(|(pieces, all)| *all = std::mem::take(pieces).concat());
+            });
+            Places(axes.map(|(_, all)| all))
         };
-        let axis = |axis: usize| {
-            let axes: Vec<&[f64]> = pieces.iter().map(|piece| &piece.places.0[axis][..]).collect();
-            axes.concat()
-        };
-        let (tiles, (blocks, axes)) = parallel::join(tiles, || (blocks(), parallel::map(6, axis)));
-        let mut axes = axes.into_iter();
-        let places = Places(std::array::from_fn(|_| axes.next().unwrap_or_default()));
-        Self { tiles, places, blocks }
+        let (tiles, places) = parallel::join(all_tiles, all_places);
+        let moved = |range: Range<usize>, by: usize| range.start + by..range.end + by;
+        let starts = first_tiles.iter().zip(&first_places);
+        let blocks = blocks.into_iter().zip(starts).flat_map(|(blocks, (&first_tile, &first_place))| {
+            blocks.into_iter().map(move |block: Block| Block {
+                tiles: moved(block.tiles, first_tile),
+                places: moved(block.places, first_place),
+                ..block
+            })
+        });
+        Self { tiles, places, blocks: blocks.collect() }
     }
 }
 
@@ -223,7 +229,7 @@ impl Splits {
 }
 
 /// Balances clumps for so many points in each patch. Which points these are does not matter yet.
-pub(super) fn lay_out(tiles: Tiles, counts: &[usize]) -> (Layout, Splits) {
+pub(super) fn lay_out(tiles: Tiles<'_>, counts: &[usize]) -> (Layout, Splits) {
     let mut clumps = parallel::map(tiles.clump_count(), |id| clump(&tiles, id as u32));
     // Clumps are in the order of their patches, of which one without mass has none.
     let patch_of = |clump: &Item| tiles.patch_of(clump.id as usize);
@@ -243,7 +249,7 @@ pub(super) fn lay_out(tiles: Tiles, counts: &[usize]) -> (Layout, Splits) {
     // Each piece has a table of all places, so there are few.
     let chunk = regions.len().div_ceil(16);
     let pieces = parallel::map_chunks(regions.len(), chunk, |range| {
-        let mut numbers = Numbers { of_place: vec![0; tiles.places.len()], given: 0 };
+        let mut numbers = Numbers { of_place: vec![0; tiles.place_count()], given: 0 };
         let count = |(members, _): &(Range<usize>, u32)| -> usize {
             clumps[members.clone()].iter().map(|clump| tiles.clump_len(clump.id as usize)).sum()
         };
@@ -255,12 +261,12 @@ pub(super) fn lay_out(tiles: Tiles, counts: &[usize]) -> (Layout, Splits) {
         layout
     });
     drop(tiles);
-    (Layout::of_pieces(&pieces), Splits(splits))
+    (Layout::of_pieces(pieces), Splits(splits))
 }
 
 /// The mean place of a tile.
-fn centre(places: &[Place], tile: &Tile) -> Place {
-    let [a, b, c] = tile.corners.map(|id| places[id as usize]);
+fn centre(all: &Tiles<'_>, tile: &Tile) -> Place {
+    let [a, b, c] = tile.corners.map(|id| all.place(id));
     Place {
         position: (a.position + b.position + c.position) / 3.0,
         normal: (a.normal + b.normal + c.normal) / 3.0,
@@ -268,11 +274,11 @@ fn centre(places: &[Place], tile: &Tile) -> Place {
 }
 
 /// A clump as a mass at its mean place.
-fn clump(all: &Tiles, id: u32) -> Item {
+fn clump(all: &Tiles<'_>, id: u32) -> Item {
     let mut mass = 0.0;
     let mut moment = Place::default();
     for tile in all.clump(id as usize) {
-        let centre = centre(&all.places, tile);
+        let centre = centre(all, tile);
         mass += tile.mass;
         moment.position += centre.position * tile.mass;
         moment.normal += centre.normal * tile.mass;
@@ -302,7 +308,7 @@ impl Numbers {
 }
 
 /// Adds a block with the tiles of these clumps.
-fn block(all: &Tiles, clumps: &[Item], points: u32, numbers: &mut Numbers, layout: &mut Layout) {
+fn block(all: &Tiles<'_>, clumps: &[Item], points: u32, numbers: &mut Numbers, layout: &mut Layout) {
     let (first_tile, first_place) = (layout.tiles.len(), layout.places.len());
     layout.tiles.extend(clumps.iter().flat_map(|clump| all.clump(clump.id as usize)));
     let tiles = &mut layout.tiles[first_tile..];
@@ -311,18 +317,18 @@ fn block(all: &Tiles, clumps: &[Item], points: u32, numbers: &mut Numbers, layou
     let mut moment = Place::default();
     let mut centres = Vec::with_capacity(tiles.len());
     for tile in &mut *tiles {
-        let centre = centre(&all.places, tile);
+        let centre = centre(all, tile);
         centres.push(centre);
         mass += tile.mass;
-        let [a, b, c] = tile.corners.map(|id| all.places[id as usize].position);
+        let [a, b, c] = tile.corners.map(|id| all.place(id).position);
         area += triangle::area(a, b, c);
         moment.position += centre.position * tile.mass;
         moment.normal += centre.normal * tile.mass;
         for corner in &mut tile.corners {
             let id = *corner;
             *corner = numbers.known(id, first_place as u32).unwrap_or_else(|| {
-                let place = &all.places[id as usize];
-                layout.places.push(place);
+                let place = all.place(id);
+                layout.places.push(&place);
                 low = [low[0].min(place.position), low[1].min(place.normal)];
                 high = [high[0].max(place.position), high[1].max(place.normal)];
                 numbers.give(id)

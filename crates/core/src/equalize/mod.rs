@@ -129,7 +129,7 @@ impl<'a> Allotment<'a> {
         let (low, high) = mesh.bounds();
         let scale = Scale { density, d_m, bend: options.bend, middle: (low + high) * 0.5 };
         let patches = Patches::new(mesh, &density.face_masses(mesh), n);
-        let (layout, splits) = lay_out(tiles(mesh, &patches.of_face, &scale), &patches.counts);
+        let (layout, splits) = lay_out(tiles(mesh, &patches, &scale), &patches.counts);
         let mut share = vec![0.0; patches.counts.len()];
         for block in &layout.blocks {
             for tile in &layout.tiles[block.tiles.clone()] {
@@ -220,7 +220,7 @@ pub(crate) fn equalize_allotted(
     let stays = |due: &Due| {
         let point = points[due.point as usize];
         let block = &layout.blocks[due.block as usize];
-        let is_there = patches.of_face[point.face.index()] == Some(block.patch);
+        let is_there = patches.of(point.face) == Some(block.patch);
         let spot = if is_there {
             None
         } else {
@@ -290,7 +290,7 @@ fn items(
     bend: f64,
 ) -> Vec<Item> {
     let mut order: Vec<(u32, u32)> =
-        (0..).zip(points).map(|(i, p)| (patches.of_face[p.face.index()].unwrap_or(0), i)).collect();
+        (0..).zip(points).map(|(i, p)| (patches.of(p.face).unwrap_or(0), i)).collect();
     order.sort_unstable();
     let item = |(_, id): (u32, u32)| Item {
         position: places[id as usize],

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
-use crate::ids::FaceId;
+use super::patches::Patches;
+use crate::ids::{FaceId, VertexId};
 use crate::mesh::SurfaceMesh;
+use crate::parallel;
 
 /// Which patches meet at a vertex.
 #[derive(Clone, Copy, PartialEq)]
@@ -20,80 +22,96 @@ enum Around {
 /// those of vertices between patches.
 pub(super) struct CornerNormals<'a> {
     mesh: &'a SurfaceMesh,
-    patch_of_face: &'a [Option<u32>],
-    around: Vec<Around>,
+    patches: &'a Patches,
+    /// Where there are several patches.
+    around: Option<Vec<Around>>,
     /// The corners of vertices between patches, by vertex and patch.
     between: BTreeMap<(u32, u32), u32>,
     /// The vertices of those.
     vertices: Vec<u32>,
-    /// The sums of the normals, weighted by area.
-    sums: Vec<DVec3>,
+    /// Unit vectors; zero where faces that fold back cancel out.
+    normals: Vec<DVec3>,
 }
 
 impl<'a> CornerNormals<'a> {
-    pub(super) fn new(mesh: &'a SurfaceMesh, patch_of_face: &'a [Option<u32>]) -> Self {
-        let mut around = vec![Around::Nothing; mesh.vertex_count()];
-        for (corners, patch) in mesh.topology().faces().iter().zip(patch_of_face) {
-            let Some(patch) = *patch else { continue };
-            for v in corners {
-                let around = &mut around[v.index()];
-                *around = match *around {
-                    Around::Nothing => Around::One(patch),
-                    Around::One(p) if p == patch => Around::One(patch),
-                    Around::One(_) | Around::Several => Around::Several,
-                };
-            }
-        }
+    pub(super) fn new(mesh: &'a SurfaceMesh, patches: &'a Patches) -> Self {
         let mut corners = Self {
             mesh,
-            patch_of_face,
-            around,
+            patches,
+            around: (!patches.is_one()).then(|| around(mesh, patches)),
             between: BTreeMap::new(),
             vertices: Vec::new(),
-            sums: vec![DVec3::ZERO; mesh.vertex_count()],
+            normals: vec![DVec3::ZERO; mesh.vertex_count()],
         };
+        // First the sums, weighted by area.
         for face in mesh.topology().face_ids() {
-            let Some(patch) = patch_of_face[face.index()] else { continue };
+            let Some(patch) = patches.of(face) else { continue };
             let weighted = mesh.face_normal(face) * mesh.face_area(face);
             for v in mesh.topology().corners(face) {
-                if corners.around[v.index()] == Around::Several {
-                    let next = corners.sums.len() as u32;
+                if corners.is_between(v) {
+                    let next = corners.normals.len() as u32;
                     let id = *corners.between.entry((v.0, patch)).or_insert(next);
                     if id == next {
-                        corners.sums.push(DVec3::ZERO);
+                        corners.normals.push(DVec3::ZERO);
                         corners.vertices.push(v.0);
                     }
-                    corners.sums[id as usize] += weighted;
+                    corners.normals[id as usize] += weighted;
                 } else {
-                    corners.sums[v.index()] += weighted;
+                    corners.normals[v.index()] += weighted;
                 }
             }
         }
+        const CHUNK: usize = 1 << 12;
+        parallel::change_chunks(&mut corners.normals, CHUNK, |_, chunk| {
+            chunk.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+        });
         corners
+    }
+
+    fn is_between(&self, vertex: VertexId) -> bool {
+        self.around.as_ref().is_some_and(|around| around[vertex.index()] == Around::Several)
     }
 
     /// How many corners there are.
     pub(super) fn count(&self) -> usize {
-        self.sums.len()
+        self.normals.len()
     }
 
-    /// The vertex of a corner.
-    pub(super) fn vertex(&self, id: usize) -> usize {
-        let vertices = self.mesh.vertex_count();
-        if id < vertices { id } else { self.vertices[id - vertices] as usize }
+    /// The position of a corner.
+    #[inline]
+    pub(super) fn position(&self, id: u32) -> DVec3 {
+        let (id, vertices) = (id as usize, self.mesh.vertex_count());
+        self.mesh.positions()[if id < vertices { id } else { self.vertices[id - vertices] as usize }]
     }
 
     /// The unit normal of a corner; zero where faces that fold back cancel out.
-    pub(super) fn at(&self, id: usize) -> DVec3 {
-        self.sums[id].normalize_or_zero()
+    #[inline]
+    pub(super) fn at(&self, id: u32) -> DVec3 {
+        self.normals[id as usize]
     }
 
     /// The corners of a face.
     pub(super) fn ids(&self, face: FaceId) -> [u32; 3] {
-        let patch = self.patch_of_face[face.index()];
-        self.mesh.topology().corners(face).map(|v| match (self.around[v.index()], patch) {
-            (Around::Several, Some(patch)) => self.between.get(&(v.0, patch)).copied().unwrap_or(v.0),
+        self.mesh.topology().corners(face).map(|v| match self.patches.of(face) {
+            Some(patch) if self.is_between(v) => self.between.get(&(v.0, patch)).copied().unwrap_or(v.0),
             _ => v.0,
         })
     }
+}
+
+/// Which patches meet at each vertex.
+fn around(mesh: &SurfaceMesh, patches: &Patches) -> Vec<Around> {
+    let mut all = vec![Around::Nothing; mesh.vertex_count()];
+    for face in mesh.topology().face_ids() {
+        let Some(patch) = patches.of(face) else { continue };
+        for v in mesh.topology().corners(face) {
+            let around = &mut all[v.index()];
+            *around = match *around {
+                Around::Nothing => Around::One(patch),
+                Around::One(p) if p == patch => Around::One(patch),
+                Around::One(_) | Around::Several => Around::Several,
+            };
+        }
+    }
+    all
 }

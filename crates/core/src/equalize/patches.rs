@@ -1,14 +1,17 @@
 //! Patches: components get a whole number of points each, so that their shares come out right.
 
+use std::num::NonZero;
+
 use glam::DVec3;
 
 use super::tiles::cell_key;
+use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
 
 /// Which patch each face belongs to and how many points each patch gets.
 pub(super) struct Patches {
-    /// `None` for the faces of components whose share came out as no point.
-    pub(super) of_face: Vec<Option<u32>>,
+    /// For each face one more than its patch, where there are several.
+    of_face: Option<Vec<Option<NonZero<u32>>>>,
     /// At least 1 for every patch.
     pub(super) counts: Vec<usize>,
 }
@@ -19,7 +22,7 @@ impl Patches {
     pub(super) fn new(mesh: &SurfaceMesh, mass: &[f64], n: usize) -> Self {
         let components = mesh.topology().components();
         if components.count == 1 {
-            return Self { of_face: vec![Some(0); mesh.face_count()], counts: vec![n] };
+            return Self { of_face: None, counts: vec![n] };
         }
         let mut moments = vec![(DVec3::ZERO, 0.0); components.count];
         let mut masses = vec![0.0; components.count];
@@ -47,12 +50,26 @@ impl Patches {
             let is_last = k + 1 == order.len();
             let due = if is_last { n } else { ((passed / total * n as f64).round() as usize).min(n) };
             if due > given {
-                number[component] = Some(counts.len() as u32);
                 counts.push(due - given);
+                number[component] = NonZero::new(counts.len() as u32);
                 given = due;
             }
         }
         let of_face = components.of_face.iter().map(|&component| number[component as usize]).collect();
-        Self { of_face, counts }
+        Self { of_face: Some(of_face), counts }
+    }
+
+    /// The patch of a face; `None` for those of components whose share came out as no point.
+    #[inline]
+    pub(super) fn of(&self, face: FaceId) -> Option<u32> {
+        match &self.of_face {
+            None => Some(0),
+            Some(of_face) => of_face[face.index()].map(|number| number.get() - 1),
+        }
+    }
+
+    /// Whether all faces belong to the same.
+    pub(super) fn is_one(&self) -> bool {
+        self.of_face.is_none()
     }
 }

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::layout::Place;
 use super::normals::CornerNormals;
+use super::patches::Patches;
 use crate::density::Density;
 use crate::geometry::triangle;
 use crate::ids::FaceId;
@@ -31,10 +32,31 @@ struct Clump {
     patch: u32,
 }
 
+/// The corners of tiles, relative to the middle of the mesh, so that squares of places lose no digits.
+struct Corners<'a> {
+    normals: CornerNormals<'a>,
+    middle: DVec3,
+    /// The length of a unit of normal.
+    bend: f64,
+    /// So many of them are those of faces.
+    shared: u32,
+    /// All others.
+    places: Vec<Place>,
+}
+
+impl Corners<'_> {
+    #[inline]
+    fn at(&self, id: u32) -> Place {
+        if id >= self.shared {
+            return self.places[(id - self.shared) as usize];
+        }
+        Place { position: self.normals.position(id) - self.middle, normal: self.normals.at(id) * self.bend }
+    }
+}
+
 /// Tiles in clumps.
-pub(super) struct Tiles {
-    /// The corners of the tiles, relative to the middle of the mesh, so that squares of places lose no digits.
-    pub(super) places: Vec<Place>,
+pub(super) struct Tiles<'a> {
+    corners: Corners<'a>,
     /// Face by face.
     tiles: Vec<Tile>,
     /// Which tiles the clumps have, one clump after the other.
@@ -43,7 +65,18 @@ pub(super) struct Tiles {
     clumps: Vec<Clump>,
 }
 
-impl Tiles {
+impl Tiles<'_> {
+    /// How many places tiles have as their corners.
+    pub(super) fn place_count(&self) -> usize {
+        self.corners.shared as usize + self.corners.places.len()
+    }
+
+    /// A corner of a tile.
+    #[inline]
+    pub(super) fn place(&self, id: u32) -> Place {
+        self.corners.at(id)
+    }
+
     /// How many clumps there are.
     pub(super) fn clump_count(&self) -> usize {
         self.clumps.len()
@@ -116,19 +149,13 @@ struct Cut {
 
 /// Cuts the faces whose patch is given into tiles; faces without mass have none. Clumps of tiles that lie close
 /// together stand together, patch by patch.
-pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &Scale) -> Tiles {
+pub(super) fn tiles<'a>(mesh: &'a SurfaceMesh, patches: &'a Patches, scale: &Scale<'_>) -> Tiles<'a> {
     const CHUNK: usize = 1 << 12;
-    let normals = CornerNormals::new(mesh, patch_of_face);
+    let normals = CornerNormals::new(mesh, patches);
     // Normals are scaled by the distance of the points, so faces share corners only where that is the same.
-    let mut places: Vec<Place> = if scale.density.is_uniform() {
-        parallel::map(normals.count(), |id| Place {
-            position: mesh.positions()[normals.vertex(id)] - scale.middle,
-            normal: normals.at(id) * (scale.bend * scale.d_m),
-        })
-    } else {
-        Vec::new()
-    };
-    let shared = places.len() as u32;
+    let shared = if scale.density.is_uniform() { normals.count() as u32 } else { 0 };
+    let bend = scale.bend * scale.d_m;
+    let mut corners = Corners { normals, middle: scale.middle, bend, shared, places: Vec::new() };
     let (low, high) = mesh.bounds();
     let from_low = scale.middle - low;
     // On needles cubes of clumps are smaller than what keys tell apart.
@@ -141,21 +168,21 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
         };
         for index in range {
             let face = FaceId::new(index);
-            let Some(patch) = patch_of_face[index] else { continue };
+            let Some(patch) = patches.of(face) else { continue };
             let density = scale.density.corners(face);
             let mean = (density[0] + density[1] + density[2]) / 3.0;
             if mean <= 0.0 {
                 continue;
             }
             let distance = scale.d_m / libm::sqrt(mean.max(SPARSEST));
-            let ids = normals.ids(face);
+            let ids = corners.normals.ids(face);
             let whole: [Corner; 3] = if shared > 0 {
-                [0, 1, 2].map(|c| Corner { id: ids[c], place: places[ids[c] as usize], density: density[c] })
+                [0, 1, 2].map(|c| Corner { id: ids[c], place: corners.at(ids[c]), density: density[c] })
             } else {
-                let corners = mesh.triangle(face);
+                let positions = mesh.triangle(face);
                 [0, 1, 2].map(|c| {
-                    let position = corners[c] - scale.middle;
-                    let normal = normals.at(ids[c] as usize) * (scale.bend * distance);
+                    let position = positions[c] - scale.middle;
+                    let normal = corners.normals.at(ids[c]) * (scale.bend * distance);
                     cut.corner(shared, Place { position, normal }, density[c])
                 })
             };
@@ -181,17 +208,16 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
         }
         cut
     });
-    drop(normals);
     // Corners of faces by themselves come after the shared ones, piece by piece.
     let count = pieces.iter().map(|piece| piece.tiles.len()).sum();
     let mut tiles: Vec<Tile> = Vec::with_capacity(count);
     let mut keys: Vec<(Key, u32)> = Vec::with_capacity(count);
     for piece in pieces {
-        let before = places.len() as u32 - shared;
+        let before = corners.places.len() as u32;
         let moved = |id: u32| if id < shared { id } else { id + before };
         keys.extend(piece.keys.into_iter().zip(tiles.len() as u32..));
         tiles.extend(piece.tiles.into_iter().map(|tile| Tile { corners: tile.corners.map(moved), ..tile }));
-        places.extend(piece.places);
+        corners.places.extend(piece.places);
     }
     parallel::sort(&mut keys);
     let mut end = 0;
@@ -202,7 +228,7 @@ pub(super) fn tiles(mesh: &SurfaceMesh, patch_of_face: &[Option<u32>], scale: &S
     });
     let clumps = clumps.collect();
     let order = keys.into_iter().map(|(_, tile)| tile).collect();
-    Tiles { places, tiles, order, clumps }
+    Tiles { corners, tiles, order, clumps }
 }
 
 /// How often the cubes of clumps are halved where the density is so many times the mean.

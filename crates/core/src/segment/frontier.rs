@@ -104,10 +104,10 @@ impl Frontier {
         }
     }
 
-    /// What is likely to be popped soon: the cheapest, and some of the next where those open nothing.
+    /// What is likely to be popped soon: the cheapest, and the four right below it.
     #[inline]
     pub(super) fn soon(&self, mut see: impl FnMut(HalfedgeId)) {
-        const SOON: usize = 3;
+        const SOON: usize = 1 + BELOW;
         self.free.0.first().into_iter().for_each(|&item| see(HalfedgeId(item)));
         self.closing.0.iter().take(SOON).for_each(|&item| see(HalfedgeId(item as u32)));
         if self.closing.0.is_empty() {
