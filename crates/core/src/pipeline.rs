@@ -3,7 +3,7 @@
 use crate::correct::Correction;
 use crate::density::Density;
 use crate::domain::PlanarDomain;
-use crate::equalize::{Allotment, EqualizeOptions, EqualizeReport, equalize, equalize_allotted};
+use crate::equalize::{Allotment, EqualizeOptions, EqualizeReport, Equalized, equalize_allotted};
 use crate::irregularity::{Irregularity, irregularity};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
@@ -432,10 +432,12 @@ impl<'a> Stages<'a> {
         let ((samples, correction), d_m, planar) = made?;
         self.begin("equalize")?;
         let points: Vec<_> = samples.iter().map(|s| s.point).collect();
-        let strip_of_face: Vec<_> = planar.strips.places.iter().map(|p| p.strip).collect();
-        let equalized = match allotment {
-            Some(allotment) => equalize_allotted(mesh, allotment, &points, &strip_of_face, options, progress),
-            None => equalize(mesh, &points, &strip_of_face, density, options, progress),
+        let equalized = if points.is_empty() {
+            Equalized::nothing(options)
+        } else {
+            let allotment = allotment.unwrap_or_else(|| allot(points.len()));
+            let strip_of_face: Vec<_> = planar.strips.places.iter().map(|p| p.strip).collect();
+            equalize_allotted(mesh, allotment, &points, &strip_of_face, options, progress)
         };
         let sample = |i: usize| {
             let (point, before) = (equalized.points[i], &samples[i]);

@@ -151,10 +151,15 @@ impl Layout {
         self.blocks.partition_point(|block| block.tiles.end <= tile as usize)
     }
 
-    /// Nothing yet, with room for so many tiles. They share corners: a block of ten has about as many places.
-    fn with_room(tiles: usize) -> Self {
-        let places = Places::with_room(tiles + tiles / 2);
-        Self { tiles: Vec::with_capacity(tiles), places, blocks: Vec::new() }
+    /// Nothing yet, with room for blocks of so many tiles.
+    fn with_room(blocks: impl Iterator<Item = usize> + Clone) -> Self {
+        // A disc of many triangles has half as many corners, and those of its rim.
+        let places = |tiles: usize| tiles / 2 + (2.0 * (tiles as f64).sqrt()) as usize + 2;
+        Self {
+            tiles: Vec::with_capacity(blocks.clone().sum()),
+            places: Places::with_room(blocks.clone().map(places).sum()),
+            blocks: Vec::with_capacity(blocks.count()),
+        }
     }
 
     /// What was laid out by itself, piece after piece.
@@ -253,8 +258,7 @@ pub(super) fn lay_out(tiles: Tiles<'_>, counts: &[usize]) -> (Layout, Splits) {
         let count = |(members, _): &(Range<usize>, u32)| -> usize {
             clumps[members.clone()].iter().map(|clump| tiles.clump_len(clump.id as usize)).sum()
         };
-        let room = regions[range.clone()].iter().map(count).sum();
-        let mut layout = Layout::with_room(room);
+        let mut layout = Layout::with_room(regions[range.clone()].iter().map(count));
         for (members, points) in &regions[range] {
             block(&tiles, &clumps[members.clone()], *points, &mut numbers, &mut layout);
         }

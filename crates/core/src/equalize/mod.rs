@@ -104,6 +104,15 @@ pub struct Equalized {
     pub report: EqualizeReport,
 }
 
+impl Equalized {
+    /// Of no points.
+    pub(crate) fn nothing(options: &EqualizeOptions) -> Self {
+        let spread_before = options.spread_before.then_some(0.0);
+        let report = EqualizeReport { spread_before, spread_after: 0.0, moved: 0.0 };
+        Self { points: Vec::new(), cells: Vec::new(), report }
+    }
+}
+
 /// Cells that spread more than before, and by more than this share, are no improvement: the points stay.
 const UNEVEN: f64 = 0.1;
 
@@ -128,7 +137,7 @@ impl<'a> Allotment<'a> {
         let d_m = libm::sqrt(mesh.area() / n as f64);
         let (low, high) = mesh.bounds();
         let scale = Scale { density, d_m, bend: options.bend, middle: (low + high) * 0.5 };
-        let patches = Patches::new(mesh, &density.face_masses(mesh), n);
+        let patches = Patches::new(mesh, density, n);
         let (layout, splits) = lay_out(tiles(mesh, &patches, &scale), &patches.counts);
         let mut share = vec![0.0; patches.counts.len()];
         for block in &layout.blocks {
@@ -156,9 +165,7 @@ pub fn equalize(
     progress: &dyn Progress,
 ) -> Equalized {
     if points.is_empty() {
-        let spread_before = options.spread_before.then_some(0.0);
-        let report = EqualizeReport { spread_before, spread_after: 0.0, moved: 0.0 };
-        return Equalized { points: Vec::new(), cells: Vec::new(), report };
+        return Equalized::nothing(options);
     }
     let allotment = Allotment::new(mesh, density, points.len(), options);
     equalize_allotted(mesh, allotment, points, strip_of_face, options, progress)

@@ -5,6 +5,7 @@ use std::num::NonZero;
 use glam::DVec3;
 
 use super::tiles::cell_key;
+use crate::density::Density;
 use crate::ids::FaceId;
 use crate::mesh::SurfaceMesh;
 
@@ -19,11 +20,12 @@ pub(super) struct Patches {
 impl Patches {
     /// Shares out `n` points by mass: every run of components along a Morton curve gets its share to within one, so that
     /// neighbours share the rounding.
-    pub(super) fn new(mesh: &SurfaceMesh, mass: &[f64], n: usize) -> Self {
+    pub(super) fn new(mesh: &SurfaceMesh, density: &Density, n: usize) -> Self {
         let components = mesh.topology().components();
         if components.count == 1 {
             return Self { of_face: None, counts: vec![n] };
         }
+        let mass = density.face_masses(mesh);
         let mut moments = vec![(DVec3::ZERO, 0.0); components.count];
         let mut masses = vec![0.0; components.count];
         for face in mesh.topology().face_ids() {
