@@ -1,9 +1,12 @@
 //! Chains the stages and keeps every value; no logic of its own.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use crate::correct::Correction;
 use crate::density::Density;
 use crate::domain::PlanarDomain;
 use crate::equalize::{Allotment, EqualizeOptions, EqualizeReport, Equalized, equalize_allotted};
+use crate::ids::FaceId;
 use crate::irregularity::{Irregularity, irregularity};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
@@ -220,7 +223,7 @@ pub enum OptionsError {
 }
 
 /// Runs all stages on a mesh. `progress` hears the stages' names: `segment`, `unfold`, `wrap`, `equalize`,
-/// `order`.
+/// `order`. Of an exact number of points a part of equalizing is done beside `unfold` and `wrap`.
 ///
 /// # Errors
 /// [`OptionsError`] when an option is out of range or the caller cancelled.
@@ -422,10 +425,13 @@ impl<'a> Stages<'a> {
             let Scattered { points, d_m } = self.scatter(&planar)?;
             Ok::<_, OptionsError>((points.into_samples(), d_m, planar))
         };
+        // Where there are no points nothing is allotted to them, if it is known in time.
+        let failed = AtomicBool::new(false);
         let allot = |n| Allotment::new(mesh, density, n, options);
         let (made, allotment) = match self.options.request {
             Request::Count(n) if (1..=SIDE_BY_SIDE).contains(&n) && mesh.face_count() <= SIDE_BY_SIDE => {
-                parallel::join(scatter, || Some(allot(n)))
+                let scatter = || scatter().inspect_err(|_| failed.store(true, Ordering::Relaxed));
+                parallel::join(scatter, || (!failed.load(Ordering::Relaxed)).then(|| allot(n)))
             }
             _ => (scatter(), None),
         };
@@ -435,9 +441,10 @@ impl<'a> Stages<'a> {
         let equalized = if points.is_empty() {
             Equalized::nothing(options)
         } else {
+            let allotment = allotment.filter(|allotment| allotment.count() == points.len());
             let allotment = allotment.unwrap_or_else(|| allot(points.len()));
-            let strip_of_face: Vec<_> = planar.strips.places.iter().map(|p| p.strip).collect();
-            equalize_allotted(mesh, allotment, &points, &strip_of_face, options, progress)
+            let strip_of_face = |face: FaceId| planar.strips.places[face.index()].strip;
+            equalize_allotted(mesh, allotment, &points, strip_of_face, options, progress)
         };
         let sample = |i: usize| {
             let (point, before) = (equalized.points[i], &samples[i]);

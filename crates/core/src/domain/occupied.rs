@@ -13,10 +13,10 @@ pub(super) struct Occupied {
     words: Vec<u64>,
 }
 
-/// At least so many cells for each point, so that few hold one.
+/// About so many cells for each point, or up to twice as many along each axis, so that few hold one.
 const CELLS: u64 = 32;
 
-/// Of more points it is not worth while to know: the bits would be larger than what the nearest cache holds.
+/// Of more points it is not worth while to know: the bits would take more than 128 KiB of the cache.
 const MOST: u64 = 1 << 15;
 
 /// A box that reaches over more cells than this in x or in y is not looked at.

@@ -136,3 +136,29 @@ fn widest_axis(items: &[Item]) -> u8 {
     };
     (0..6).fold(0, |best, axis| if extent(axis) > extent(best) { axis } else { best })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Clumps of equal mass in a row and as many points, both in disorder: each region has the clump in whose place its point is.
+    #[test]
+    fn points_are_dealt_out_along_a_row() {
+        const COUNT: u32 = 8 * ALONE as u32 + 3;
+        let item = |mass: f64| {
+            move |id: u32| {
+                let place = f64::from(id * 7 % COUNT);
+                Item { position: DVec3::X * place, normal: DVec3::ZERO, mass, id }
+            }
+        };
+        let mut clumps: Vec<Item> = (0..COUNT).map(item(1.0)).collect();
+        let mut points: Vec<Item> = (0..COUNT).map(item(0.0)).collect();
+        let balanced = Balanced::new(&mut clumps, points.len());
+        balanced.deal(&mut points);
+        assert_eq!(balanced.regions.len(), points.len());
+        for (k, region) in balanced.regions.iter().enumerate() {
+            assert_eq!((region.clumps.clone(), region.points), (k..k + 1, 1));
+            assert_eq!((clumps[k].position.x, points[k].position.x), (k as f64, k as f64));
+        }
+    }
+}

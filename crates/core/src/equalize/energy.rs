@@ -158,3 +158,35 @@ fn field_of(
     let points: Vec<DVec3> = standing.iter().map(|(_, spot)| spot.place * unit).collect();
     Field::new(quadratures(layout, relaxed, &sites, unit), &points, sight)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ids::FaceId;
+    use crate::random::Random;
+
+    /// The same face and the same bits as when every tile is looked at, also where tiles share corners and sides.
+    #[test]
+    fn balls_pass_over_no_nearer_tile() {
+        let mut random = Random::new(6, 1);
+        let mut place = |width: f64| {
+            DVec3::from_array(
+                [(); 3].map(|()| (random.unit() - 0.5) * width).map(|x| (x * 8.0).round() / 8.0),
+            )
+        };
+        let grounds: Vec<Ground> = (0..60)
+            .map(|face| {
+                let at = place(4.0);
+                Ground { face: FaceId::new(face), corners: [at, at + place(2.0), at + place(1.0)] }
+            })
+            .collect();
+        let standings = Standings::new(grounds.clone());
+        for _ in 0..500 {
+            let wanted = place(8.0);
+            let found = [nearest(grounds.iter().copied(), wanted), standings.nearest(wanted)]
+                .map(|spot| spot.map(|spot| (spot.face, spot.place)));
+            assert_eq!(found[0], found[1], "{wanted}");
+        }
+        assert!(Standings::new(Vec::new()).nearest(DVec3::ZERO).is_none());
+    }
+}

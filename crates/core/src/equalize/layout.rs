@@ -53,7 +53,6 @@ impl Bounds {
 }
 
 /// Many places, coordinate by coordinate: three of the position, three of the normal.
-#[derive(Default)]
 pub(super) struct Places([Vec<f64>; 6]);
 
 impl Places {
@@ -110,7 +109,6 @@ pub(super) struct Block {
 }
 
 /// The surface, cut and put in order.
-#[derive(Default)]
 pub(super) struct Layout {
     /// Their corners are among `places`.
     pub(super) tiles: Vec<Tile>,
@@ -151,10 +149,8 @@ impl Layout {
         self.blocks.partition_point(|block| block.tiles.end <= tile as usize)
     }
 
-    /// Nothing yet, with room for blocks of so many tiles.
-    fn with_room(blocks: impl Iterator<Item = usize> + Clone) -> Self {
-        // A disc of many triangles has half as many corners, and those of its rim.
-        let places = |tiles: usize| tiles / 2 + (2.0 * (tiles as f64).sqrt()) as usize + 2;
+    /// Nothing yet, with room for blocks of so many tiles; `places` says about how many corners those have.
+    fn with_room(blocks: impl Iterator<Item = usize> + Clone, places: impl Fn(usize) -> usize) -> Self {
         Self {
             tiles: Vec::with_capacity(blocks.clone().sum()),
             places: Places::with_room(blocks.clone().map(places).sum()),
@@ -171,13 +167,13 @@ impl Layout {
         let first_tiles = before(|piece| piece.tiles.len());
         let first_places = before(|piece| piece.places.len());
         let (mut tiles, mut blocks) = (Vec::new(), Vec::new());
-        let mut axes = [(); 6].map(|()| (Vec::new(), Vec::new()));
+        let mut axes: [(Vec<Vec<f64>>, Vec<f64>); 6] = [(); 6].map(|()| (Vec::new(), Vec::new()));
         for piece in pieces {
             tiles.push(piece.tiles);
             blocks.push(piece.blocks);
             axes.iter_mut().zip(piece.places.0).for_each(|(axis, of_piece)| axis.0.push(of_piece));
         }
-        // By value, so that never all is there twice.
+        // By value, so that what has been put there is given back.
         let all_tiles = || {
             let mut all = Vec::with_capacity(tiles.iter().map(Vec::len).sum());
             for (tiles, &by) in tiles.into_iter().zip(&first_places) {
@@ -188,7 +184,10 @@ impl Layout {
         };
         let all_places = || {
             parallel::change_chunks(&mut axes, 1, |_, axes| {
-                axes.iter_mut().for_each(|(pieces, all)| *all = std::mem::take(pieces).concat());
+                for (pieces, all) in axes {
+                    all.reserve_exact(pieces.iter().map(Vec::len).sum());
+                    std::mem::take(pieces).into_iter().for_each(|piece| all.extend_from_slice(&piece));
+                }
             });
             Places(axes.map(|(_, all)| all))
         };
@@ -251,16 +250,18 @@ pub(super) fn lay_out(tiles: Tiles<'_>, counts: &[usize]) -> (Layout, Splits) {
         start += own;
         rest = others;
     }
+    let order: Vec<u32> = clumps.into_iter().map(|clump| clump.id).collect();
     // Each piece has a table of all places, so there are few.
     let chunk = regions.len().div_ceil(16);
     let pieces = parallel::map_chunks(regions.len(), chunk, |range| {
         let mut numbers = Numbers { of_place: vec![0; tiles.place_count()], given: 0 };
         let count = |(members, _): &(Range<usize>, u32)| -> usize {
-            clumps[members.clone()].iter().map(|clump| tiles.clump_len(clump.id as usize)).sum()
+            order[members.clone()].iter().map(|&clump| tiles.clump(clump as usize).len()).sum()
         };
-        let mut layout = Layout::with_room(regions[range.clone()].iter().map(count));
+        let places = |tiles_of_block| tiles.places_of(tiles_of_block);
+        let mut layout = Layout::with_room(regions[range.clone()].iter().map(count), places);
         for (members, points) in &regions[range] {
-            block(&tiles, &clumps[members.clone()], *points, &mut numbers, &mut layout);
+            block(&tiles, &order[members.clone()], *points, &mut numbers, &mut layout);
         }
         layout
     });
@@ -312,9 +313,9 @@ impl Numbers {
 }
 
 /// Adds a block with the tiles of these clumps.
-fn block(all: &Tiles<'_>, clumps: &[Item], points: u32, numbers: &mut Numbers, layout: &mut Layout) {
+fn block(all: &Tiles<'_>, clumps: &[u32], points: u32, numbers: &mut Numbers, layout: &mut Layout) {
     let (first_tile, first_place) = (layout.tiles.len(), layout.places.len());
-    layout.tiles.extend(clumps.iter().flat_map(|clump| all.clump(clump.id as usize)));
+    clumps.iter().for_each(|&clump| layout.tiles.extend_from_slice(all.clump(clump as usize)));
     let tiles = &mut layout.tiles[first_tile..];
     let (mut low, mut high) = ([DVec3::INFINITY; 2], [DVec3::NEG_INFINITY; 2]);
     let (mut mass, mut area) = (0.0, 0.0);
@@ -348,7 +349,7 @@ fn block(all: &Tiles<'_>, clumps: &[Item], points: u32, numbers: &mut Numbers, l
         places: first_place..layout.places.len(),
         bounds: Bounds::between(low, high),
         centre: nearest.filter(|place| aside(place) > distance * distance).unwrap_or(mean),
-        patch: all.patch_of(clumps[0].id as usize),
+        patch: all.patch_of(clumps[0] as usize),
         points,
         distance,
     };

@@ -38,7 +38,7 @@ use glam::DVec3;
 
 use crate::density::Density;
 use crate::geometry::triangle;
-use crate::ids::StripId;
+use crate::ids::{FaceId, StripId};
 use crate::mesh::SurfaceMesh;
 use crate::parallel;
 use crate::progress::Progress;
@@ -150,6 +150,11 @@ impl<'a> Allotment<'a> {
         }
         Self { scale, patches, layout, splits, share, normals: Normals::new(mesh) }
     }
+
+    /// To how many points.
+    pub(crate) fn count(&self) -> usize {
+        self.patches.counts.iter().sum()
+    }
 }
 
 /// Moves points along the surface until each stands for the same mass: area times density. `strip_of_face` says which
@@ -168,7 +173,7 @@ pub fn equalize(
         return Equalized::nothing(options);
     }
     let allotment = Allotment::new(mesh, density, points.len(), options);
-    equalize_allotted(mesh, allotment, points, strip_of_face, options, progress)
+    equalize_allotted(mesh, allotment, points, |face| strip_of_face[face.index()], options, progress)
 }
 
 /// As [`equalize`], with what was allotted to as many points by the same options.
@@ -176,15 +181,17 @@ pub(crate) fn equalize_allotted(
     mesh: &SurfaceMesh,
     allotment: Allotment<'_>,
     points: &[SurfacePoint],
-    strip_of_face: &[StripId],
+    strip_of_face: impl Fn(FaceId) -> StripId + Send,
     options: &EqualizeOptions,
     progress: &dyn Progress,
 ) -> Equalized {
     let n = points.len();
-    let Allotment { scale, patches, layout, splits, share, normals } = &allotment;
-    let Scale { density, d_m, .. } = *scale;
-    let places: Vec<DVec3> = parallel::map(n, |i| mesh.locate(&points[i]) - scale.middle);
-    let dues = splits.dues(items(mesh, patches, points, &places, options.bend * d_m), &layout.blocks);
+    let Allotment { scale, patches, layout, splits, share, normals } = allotment;
+    let Scale { density, d_m, middle, .. } = scale;
+    let layout = &layout;
+    let places: Vec<DVec3> = parallel::map(n, |i| mesh.locate(&points[i]) - middle);
+    let dues = splits.dues(items(mesh, &patches, points, &places, options.bend * d_m), &layout.blocks);
+    drop(splits);
     let sites = |at: &(dyn Fn(&Due) -> DVec3 + Sync)| -> Vec<Site> {
         let site = |due: &Due| {
             let block = &layout.blocks[due.block as usize];
@@ -216,10 +223,10 @@ pub(crate) fn equalize_allotted(
     let mut settled = settle(layout, &relaxed, sides.as_ref());
     let homes = homes(layout, &relaxed, sides.as_ref(), &mut settled);
     let cells = Cells { layout, relaxed: &relaxed, sides: sides.as_ref(), homes };
-    face_evenly(normals, &cells, &mut settled);
+    face_evenly(&normals, &cells, &mut settled);
     spacing::make_way(&cells, &mut settled);
     if let Some(options) = &options.for_views {
-        views::choose(mesh, scale.middle, &cells, &mut settled, options, progress);
+        views::choose(mesh, middle, &cells, &mut settled, options, progress);
         spacing::make_way(&cells, &mut settled);
     }
     let masses: Vec<f64> = relaxed.cells.iter().map(|cell| cell.mass).collect();
@@ -233,7 +240,7 @@ pub(crate) fn equalize_allotted(
         } else {
             settle::nearest(block.tiles.clone().map(|tile| layout.ground(tile)), block.centre.position)
         };
-        spot.map_or(point, |spot| on_surface(mesh, &spot, scale.middle))
+        spot.map_or(point, |spot| on_surface(mesh, &spot, middle))
     };
     let spread_before = before.as_deref().map(spread);
     if spread(&masses) > UNEVEN {
@@ -243,8 +250,8 @@ pub(crate) fn equalize_allotted(
         }
     }
     let places_now = parallel::map(n, |i| {
-        let point = settled[i].map_or_else(|| stays(&dues[i]), |spot| on_surface(mesh, &spot, scale.middle));
-        (point, mesh.locate(&point) - scale.middle)
+        let point = settled[i].map_or_else(|| stays(&dues[i]), |spot| on_surface(mesh, &spot, middle));
+        (point, mesh.locate(&point) - middle)
     });
     let mut moved = 0.0;
     let mut result = points.to_vec();

@@ -77,6 +77,11 @@ impl<'a> CornerNormals<'a> {
         self.normals.len()
     }
 
+    /// Gives the memory of the normals back.
+    pub(super) fn give_back(&mut self) {
+        self.normals = Vec::new();
+    }
+
     /// The position of a corner.
     #[inline]
     pub(super) fn position(&self, id: u32) -> DVec3 {

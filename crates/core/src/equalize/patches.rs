@@ -25,7 +25,6 @@ impl Patches {
         if components.count == 1 {
             return Self { of_face: None, counts: vec![n] };
         }
-        let mass = density.face_masses(mesh);
         let mut moments = vec![(DVec3::ZERO, 0.0); components.count];
         let mut masses = vec![0.0; components.count];
         for face in mesh.topology().face_ids() {
@@ -34,7 +33,7 @@ impl Patches {
             let (moment, area) = &mut moments[component];
             *moment += (a + b + c) / 3.0 * mesh.face_area(face);
             *area += mesh.face_area(face);
-            masses[component] += mass[face.index()];
+            masses[component] += density.face_mass(mesh, face);
         }
         let (low, high) = mesh.bounds();
         let cell = (high - low).max_element() / 1024.0;

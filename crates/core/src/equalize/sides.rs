@@ -27,20 +27,20 @@ impl Sides {
     /// Of `n` points; `None` where there is one side only.
     pub(super) fn new(
         mesh: &SurfaceMesh,
-        strip_of_face: &[StripId],
+        strip_of_face: impl Fn(FaceId) -> StripId,
         density: &Density,
         n: usize,
     ) -> Option<Self> {
         let parts = mesh.topology().components_across(|side, twin| {
             let (face, near) = (side.face(), twin.face());
-            strip_of_face[face.index()] == strip_of_face[near.index()]
+            strip_of_face(face) == strip_of_face(near)
                 && mesh.face_normal(face).distance_squared(mesh.face_normal(near)) < CREASE
         });
-        let masses = density.face_masses(mesh);
-        let each = masses.iter().sum::<f64>() / n as f64;
+        let mass = |face| density.face_mass(mesh, face);
+        let each = mesh.topology().face_ids().map(mass).sum::<f64>() / n as f64;
         let mut due = vec![0.0; parts.count];
-        for (part, mass) in parts.of_face.iter().zip(&masses) {
-            due[*part as usize] += mass / each;
+        for (part, face) in parts.of_face.iter().zip(mesh.topology().face_ids()) {
+            due[*part as usize] += mass(face) / each;
         }
         // The first is that of all small ones.
         let mut count = 1;
@@ -55,9 +55,10 @@ impl Sides {
         let mut of_face = parts.of_face;
         of_face.iter_mut().for_each(|part| *part = number[*part as usize]);
         let mut normals = vec![(DVec3::ZERO, 0.0); count as usize];
-        for (face, (side, mass)) in of_face.iter().zip(&masses).enumerate() {
-            let sum: &mut (DVec3, f64) = &mut normals[*side as usize];
-            *sum = (sum.0 + mesh.face_normal(FaceId::new(face)) * *mass, sum.1 + mass);
+        for (side, face) in of_face.iter().zip(mesh.topology().face_ids()) {
+            let (sum, mass): (DVec3, f64) = normals[*side as usize];
+            let of_face = density.face_mass(mesh, face);
+            normals[*side as usize] = (sum + mesh.face_normal(face) * of_face, mass + of_face);
         }
         let normals =
             normals.into_iter().map(|(sum, mass)| if mass > 0.0 { sum / mass } else { sum }).collect();

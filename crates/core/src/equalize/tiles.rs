@@ -57,10 +57,8 @@ impl Corners<'_> {
 /// Tiles in clumps.
 pub(super) struct Tiles<'a> {
     corners: Corners<'a>,
-    /// Face by face.
+    /// Clump by clump.
     tiles: Vec<Tile>,
-    /// Which tiles the clumps have, one clump after the other.
-    order: Vec<u32>,
     /// Ascending.
     clumps: Vec<Clump>,
 }
@@ -69,6 +67,15 @@ impl Tiles<'_> {
     /// How many places tiles have as their corners.
     pub(super) fn place_count(&self) -> usize {
         self.corners.shared as usize + self.corners.places.len()
+    }
+
+    /// About how many places so many tiles have that lie together.
+    pub(super) fn places_of(&self, tiles: usize) -> usize {
+        if self.corners.shared == 0 {
+            return 3 * tiles;
+        }
+        // A disc of many triangles has half as many corners, and those of its rim.
+        tiles / 2 + (2.0 * (tiles as f64).sqrt()) as usize + 2
     }
 
     /// A corner of a tile.
@@ -87,14 +94,9 @@ impl Tiles<'_> {
         self.clumps[clump].patch
     }
 
-    /// How many tiles a clump has.
-    pub(super) fn clump_len(&self, clump: usize) -> usize {
-        self.range(clump).len()
-    }
-
     /// The tiles of a clump.
-    pub(super) fn clump(&self, clump: usize) -> impl Iterator<Item = &Tile> + Clone {
-        self.order[self.range(clump)].iter().map(|&tile| &self.tiles[tile as usize])
+    pub(super) fn clump(&self, clump: usize) -> &[Tile] {
+        &self.tiles[self.range(clump)]
     }
 
     fn range(&self, clump: usize) -> Range<usize> {
@@ -208,6 +210,9 @@ pub(super) fn tiles<'a>(mesh: &'a SurfaceMesh, patches: &'a Patches, scale: &Sca
         }
         cut
     });
+    if shared == 0 {
+        corners.normals.give_back();
+    }
     // Corners of faces by themselves come after the shared ones, piece by piece.
     let count = pieces.iter().map(|piece| piece.tiles.len()).sum();
     let mut tiles: Vec<Tile> = Vec::with_capacity(count);
@@ -227,8 +232,10 @@ pub(super) fn tiles<'a>(mesh: &'a SurfaceMesh, patches: &'a Patches, scale: &Sca
         Clump { end, patch }
     });
     let clumps = clumps.collect();
-    let order = keys.into_iter().map(|(_, tile)| tile).collect();
-    Tiles { corners, tiles, order, clumps }
+    // The keys are given back before the tiles are put in order.
+    let order: Vec<u32> = keys.into_iter().map(|(_, tile)| tile).collect();
+    let tiles = parallel::map(order.len(), |i| tiles[order[i] as usize]);
+    Tiles { corners, tiles, clumps }
 }
 
 /// How often the cubes of clumps are halved where the density is so many times the mean.
@@ -347,4 +354,16 @@ pub(super) fn cell_key(p: DVec3, cell: f64) -> u64 {
         (v | (v << 2)) & 0x1249_2492_4924_9249
     };
     spread(p.x) | (spread(p.y) << 1) | (spread(p.z) << 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cubes_are_halved_where_it_is_four_times_as_dense() {
+        let of = [0.0, 1.0, 3.999, 4.0, 15.999, 16.0, f64::NAN].map(halvings);
+        assert_eq!(of, [0, 0, 0, 1, 1, 2, 0]);
+        assert_eq!(halvings(f64::INFINITY), u32::MAX);
+    }
 }

@@ -112,7 +112,8 @@ impl SurfaceMesh {
         self.positions[vertex.index()]
     }
 
-    /// Asks for the area of a face and the positions of its corners, so that they are under way while other work is done.
+    /// Asks for the area of a face and the positions of its corners, so that they are under way while other work is done. Which
+    /// corners it has should have been asked for before ([`Topology::fetch_corners`]): it is looked up here.
     #[inline]
     pub(crate) fn fetch(&self, face: FaceId) {
         prefetch_index(&self.areas, face.index());
